@@ -13,7 +13,7 @@ from .algorithms import (
     open_choices as open_choices,
     tent_collapse as tent_collapse,
 )
-from .baseline import uniform_rescaling as uniform_rescaling
+from .baseline import search_box as search_box, uniform_rescaling as uniform_rescaling
 from .loop import (
     AskedRun as AskedRun,
     joined_runs as joined_runs,
@@ -42,5 +42,4 @@ from .optimizers import (
 )
 from .repair import Handling as Handling, Stretch as Stretch, judge_of as judge_of
 from .result import JointRuns as JointRuns, Run as Run
-from .search_boxes import search_box as search_box
 from .within_budget import BudgetedRun as BudgetedRun, run_within as run_within

@@ -13,11 +13,11 @@ import numpy as np
 
 from ..problem import Array, Problem, TrajgapError, in_processes
 from .algorithm import Algorithm, S, Search, State
+from .baseline import looked_in
 from .budget import searched
 from .objective import Bounds, Counted, Objective
 from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
-from .search_boxes import looked_in
 from .settings import COUNT, SEED, checked
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
 
@@ -68,22 +68,15 @@ def _stepped(
 
 @dataclass(frozen=True, eq=False)
 class AskedRun:
-    """The specification of one run.
-
-    Attributes
-    ----------
-    problem : Problem
-        Its coupling is ignored.
-    stream : tuple of int
-        Spawn key under the seed.
-    handling : str
-        Treatment of vectors that break a limit; see `Handling`.
-    """
+    """The specification of one run."""
 
     problem: Problem
+    """Its coupling is ignored."""
     seed: int
     stream: tuple[int, ...] = ()
+    """Spawn key under the seed."""
     handling: str = Handling.DEATH_PENALTY
+    """Treatment of vectors that break a limit; see `Handling`."""
 
 
 def _started(method: Method, questions: Sequence[AskedRun]) -> list[Start]:

@@ -16,16 +16,11 @@ Objective = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """Box of admissible positions; for a problem, its bounds on the segment durations.
-
-    Attributes
-    ----------
-    lower, upper : ndarray, shape (dimensions,)
-        In s for durations; infinite if there is none.
-    """
+    """Box of admissible positions; for a problem, its bounds on the segment durations."""
 
     lower: Array
     upper: Array
+    """Shape (dimensions,). In s for durations; infinite if there is none."""
 
     @classmethod
     def of(cls, problem: Problem) -> Bounds:
@@ -39,16 +34,6 @@ class DeathPenalty:
 
     Source: `puma560-mnam-pso-353`, (13) with Step 2 (penalty ∞); `irb460-pso-353`, (18)(19) with
     its flow chart (penalty "a very large constant").
-
-    Parameters
-    ----------
-    problem : Problem
-        All joints share one duration vector; its coupling is ignored.
-    penalty : float
-        Fitness of an infeasible vector, s.
-    tolerance : float
-        Relative excess over a limit that still counts as keeping it: half of the checker's, so
-        an answer at the edge passes the checker, which adds a bound on rounding errors.
 
     Raises
     ------
@@ -64,8 +49,12 @@ class DeathPenalty:
     """
 
     problem: Problem
+    """All joints share one duration vector; its coupling is ignored."""
     penalty: float = np.inf
+    """Fitness of an infeasible vector, s."""
     tolerance: float = TOLERANCE / 2
+    """Relative excess over a limit that still counts as keeping it: half of the checker's, so an
+    answer at the edge passes the checker, which adds a bound on rounding errors."""
 
     def __post_init__(self) -> None:
         problem = self.problem

@@ -44,16 +44,6 @@ class Stretch:
     the death penalty does. The search continues from the unchanged position; only its fitness
     changes. It therefore works with every algorithm and leaves the equations as printed.
 
-    Parameters
-    ----------
-    problem : Problem
-        All joints share one duration vector; its coupling is ignored.
-    penalty : float
-        Fitness if no stretch helps, s: for a duration of 0 or less, stretched durations outside the
-        problem's bounds, a moving joint with limit 0, or a path beyond a position limit.
-    shorten : bool
-        Whether a vector with c* < 1 is shortened too.
-
     Raises
     ------
     TrajgapError
@@ -67,8 +57,12 @@ class Stretch:
     """
 
     problem: Problem
+    """All joints share one duration vector; its coupling is ignored."""
     penalty: float = np.inf
+    """Fitness if no stretch helps, s: for a duration of 0 or less, stretched durations outside the
+    problem's bounds, a moving joint with limit 0, or a path beyond a position limit."""
     shorten: bool = False
+    """Whether a vector with c* < 1 is shortened too."""
 
     def __post_init__(self) -> None:
         DeathPenalty(self.problem, self.penalty)

@@ -21,19 +21,13 @@ iteration touches still fits a cache."""
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """What one run begins with.
-
-    Attributes
-    ----------
-    judge : Judge
-        Neighbours that share one are judged in one call.
-    rng : numpy.random.Generator
-        Its only source of randomness.
-    """
+    """What one run begins with."""
 
     judge: Judge
+    """Neighbours that share one are judged in one call."""
     bounds: Bounds
     rng: np.random.Generator
+    """Its only source of randomness."""
 
 
 def moves_together(algorithm: object) -> bool:

@@ -9,31 +9,26 @@ import numpy as np
 
 from ..problem import Array, Problem, TrajgapError
 from .algorithm import Algorithm, Search
+from .baseline import looked_in
 from .budget import Budgeted, BudgetSpent
 from .loop import states
 from .repair import Handling, judge_of
-from .search_boxes import looked_in
 from .settings import COUNT, SEED, checked
 from .time_limit import TimeSpent, time_limit
 
 
 @dataclass(frozen=True, eq=False)
 class BudgetedRun:
-    """The result of one search within its budget, as recorded by the objective.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        Durations of the best position evaluated, s; with a stretch, those that it represents.
-    reported_time : float
-        Its fitness, s; inf if no feasible vector was evaluated.
-    totals : ndarray, shape (evaluations,)
-        Best fitness after each evaluation, s; inf before anything feasible was judged.
-    """
+    """The result of one search within its budget, as recorded by the objective."""
 
     durations: Array
+    """Shape (segments,). Durations of the best position evaluated, s; with a stretch, those that it
+    represents."""
     reported_time: float
+    """Its fitness, s; inf if no feasible vector was evaluated."""
     totals: Array
+    """Shape (evaluations,). Best fitness after each evaluation, s; inf before anything feasible was
+    judged."""
 
     @property
     def evaluations(self) -> int:

@@ -1,8 +1,9 @@
-"""Text from outside, made safe to print: whatever steers or hides is shown by its number."""
+"""Text made safe to print, where whatever steers or hides is shown by its number; and lists."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from unicodedata import category as unicode_category
 
 _SPACE = "Zs"
@@ -29,6 +30,17 @@ def visible(text: str, keep: str = "") -> str:
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() or c in keep else _shown(c) for c in text)
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words as a sentence lists them.
+
+    Examples
+    --------
+    >>> listed(["one"]), listed(["one", "two", "three"])
+    ('one', 'one, two and three')
+    """
+    return " and ".join(part for part in (", ".join(words[:-1]), *words[-1:]) if part)
 
 
 def escaped(text: str) -> str:

@@ -38,14 +38,6 @@ SECONDS = 300.0
 
 WITHOUT_DRAWS = frozenset({DESCENT, "rescale", "scipy:direct", "scipy:shgo"})
 """Optimisers that draw no random numbers: every seed gives the same run, so one is made."""
-_FIRST_RANGES = ("position_initial", "position_range")
-"""Settings of the papers' algorithms that say where their first positions are drawn."""
-
-_REPAIRED = (
-    "cma, stretch: CMA-ES with repair. Only for CMA-ES, durations that break a limit count with "
-    "the shortest uniform stretch that keeps all limits."
-)
-"""What a reader must know of the baseline that is judged otherwise than the rest."""
 
 Named = str | Callable[..., object]
 """An optimiser's name, or a function ``f(fun, bounds, budget, rng)`` of a module."""
@@ -366,7 +358,10 @@ def enter(
             if handling == Handling.STRETCH:
                 repaired = replace(repaired, label="cma")
             else:
-                notes.append(_REPAIRED)
+                notes.append(
+                    "cma, stretch: CMA-ES with repair. Only for CMA-ES, durations that break a "
+                    "limit count with the shortest uniform stretch that keeps all limits."
+                )
             entrants.setdefault(repaired.label, repaired)
     return tuple(entrants.values()), tuple(notes)
 
@@ -377,8 +372,8 @@ def first_range(name: str, own: Mapping[str, Any], box: Bounds) -> dict[str, tup
         return {}
     low, high = float(box.lower.max()), float(box.upper.min())
     algorithm = from_settings(name, {})
-    fields = [one for one in _FIRST_RANGES if hasattr(algorithm, one) and one not in own]
-    return {one: (low, high) for one in fields if low < high}
+    named = [one for one in ("position_initial", "position_range") if hasattr(algorithm, one)]
+    return {one: (low, high) for one in named if one not in own and low < high}
 
 
 def _path(function: Callable[..., object]) -> str:

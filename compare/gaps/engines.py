@@ -17,8 +17,6 @@ from .trials import TrialOutcome, measured_trial
 
 _GRACE = 5.0
 """Seconds after its time limit in which a process may end a trial by itself."""
-_AHEAD = 2
-"""Trials handed out for each worker: the next one is there when it ends one."""
 _PATIENCE = 30
 """Seconds in which a scheduler must answer."""
 
@@ -135,12 +133,11 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
         If the engine itself fails; trials that have not returned are then not done.
     """
     pending: dict[Future[TrialOutcome], Trial] = {}
-    room = _AHEAD * engine.slots()
     try:
         for trial in trials:
-            if len(pending) >= room:
+            # Two for each worker: the next one is there when it ends one.
+            if len(pending) >= 2 * engine.slots():
                 yield from _finished(pending, engine)
-                room = _AHEAD * engine.slots()
             pending[_submitted(engine, trial)] = trial
         while pending:
             yield from _finished(pending, engine)
@@ -162,15 +159,12 @@ def _finished(pending: dict[Future[TrialOutcome], Trial], engine: Engine) -> Ite
     for future in done:
         trial = pending.pop(future)
         error = None if future.cancelled() else future.exception()
-        if future.cancelled() or isinstance(error, OSError | TimeoutError | RuntimeError):
-            raise _lost(engine, error)
-        if error is None:
+        if error is None and not future.cancelled():
             yield future.result()
         elif type(error).__name__ == "KilledWorker":
             # Dask has tried on several workers, and each has died.
-            yield TrialOutcome(
-                failed(trial, f"{trial.optimizer}: workers died repeatedly while running it"), 0
-            )
+            why = f"{trial.optimizer}: workers died repeatedly while running it"
+            yield TrialOutcome(failed(trial, why), 0)
         elif isinstance(error, TrajgapError):
             raise error
         else:

@@ -112,16 +112,16 @@ def flat(row: Row) -> dict[str, Any]:
     return {name: found[name] for name in COLUMNS}
 
 
-def _write_csv(rows: Iterable[Row], path: Path) -> int:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        return _into_csv(rows, file)
-
-
 def rows_text(rows: Iterable[Row]) -> str:
     """The text of a CSV export of rows: one line a run, `COLUMNS`."""
     table = io.StringIO()
     _into_csv(rows, table)
     return table.getvalue()
+
+
+def _write_csv(rows: Iterable[Row], path: Path) -> int:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        return _into_csv(rows, file)
 
 
 def _into_csv(rows: Iterable[Row], file: TextIO) -> int:

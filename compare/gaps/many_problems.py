@@ -7,17 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...problem import TOLERANCE
 from ..documents import BenchResult, OverallStanding, OverallTarget, Standing, Why, value_or_none
 from .benching import Runs
 from .rows import Row
 from .statistics import quantiles
-
-_ALIKE = 1e-9
-"""Median gaps so near each other are a tie: the checker's tolerance."""
-_HALF_WITHOUT = "on too many problems half of the runs have no answer"
-"""Why a median over the problems is missing."""
-_FIRST_TARGET = 0.01
-"""Gap by which optimisers are put in order: what a paper's digits can tell apart."""
 
 
 def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
@@ -41,7 +35,7 @@ def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
     for result, best in zip(results, least, strict=True):
         for one in result.standings:
             by_name.setdefault(one.optimizer, []).append(one)
-            tied = _median(one) <= best + _ALIKE and np.isfinite(best)
+            tied = _median(one) <= best + TOLERANCE and np.isfinite(best)
             firsts[one.optimizer] = firsts.get(one.optimizer, 0) + tied
     found = [_standing(name, own, firsts[name]) for name, own in by_name.items()]
     return tuple(sorted(found, key=_order))
@@ -74,11 +68,13 @@ def _standing(name: str, own: Sequence[Standing], first: int) -> OverallStanding
 
 
 def _gap(value: float) -> float | Why:
-    return value if np.isfinite(value) else Why(_HALF_WITHOUT)
+    why = "on too many problems half of the runs have no answer"
+    return value if np.isfinite(value) else Why(why)
 
 
 def _order(standing: OverallStanding) -> tuple[float, float]:
-    rate = next(target.rate for target in standing.targets if target.gap == _FIRST_TARGET)
+    # By the gap that a paper's digits can tell apart.
+    rate = next(target.rate for target in standing.targets if target.gap == 0.01)
     return -rate, value_or_none(standing.median) or np.inf
 
 

@@ -17,8 +17,6 @@ from ...problem import Array, Problem, TrajgapError, Verdict
 ROW_FORMAT = 1
 """Version of keys and rows: whatever changes a run or the meaning of a field raises it."""
 
-_PER_DECADE = 32
-"""Points of a trace for every tenfold of evaluations: 7 % apart, finer than two seeds differ."""
 _APART = ("problem", "reference", "seconds")
 """Fields of a trial that are not hashed: the problem enters by its own hash, the reference is what
 gaps are set against, and the time limit alters no run that ends within it."""
@@ -80,31 +78,6 @@ def canonical(value: object) -> str:
 class Trial:
     """All that determines one run of one optimiser.
 
-    Parameters
-    ----------
-    problem : Problem
-        Searched with one duration vector for all its joints, whatever its coupling.
-    name, reading : str
-        Its names in rows, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
-    optimizer : str
-        As `find_optimizer` takes it.
-    settings : str
-        Its settings as `canonical` JSON.
-    handling : str
-        What happens to vectors that break a limit; see `Handling`.
-    budget : int
-        Evaluations; the objective enforces it.
-    stream : tuple of int
-        Spawn key under the seed; (j,) if joint j is searched separately, as in `run_per_joint`.
-    origin : str
-        Where the optimiser comes from: a package with its version, or a hash of its source.
-    reference : Bracket or None
-        Reference for the gaps of the row.
-    seconds : float
-        A run that takes longer has failed.
-    problem_sha256 : str
-        Hash of the problem's own numbers, as certificates seal theirs; found if left empty.
-
     Raises
     ------
     TrajgapError
@@ -112,18 +85,29 @@ class Trial:
     """
 
     problem: Problem
+    """Searched with one duration vector for all its joints, whatever its coupling."""
     name: str
     reading: str
+    """Its names in rows, such as "puma560-mnam-pso-353/six-joints" and "durations-positive"."""
     optimizer: str
+    """As `find_optimizer` takes it."""
     settings: str = "{}"
+    """Its settings as `canonical` JSON."""
     handling: str = Handling.DEATH_PENALTY
+    """What happens to vectors that break a limit; see `Handling`."""
     seed: int = 0
     budget: int = 6000  # of what counts no iterations; plans state it
+    """Evaluations; the objective enforces it."""
     stream: tuple[int, ...] = ()
+    """Spawn key under the seed; (j,) if joint j is searched separately, as in `run_per_joint`."""
     origin: str = ""
+    """Where the optimiser comes from: a package with its version, or a hash of its source."""
     reference: Bracket | None = None
+    """Reference for the gaps of the row."""
     seconds: float = float("inf")
+    """A run that takes longer has failed."""
     problem_sha256: str = ""
+    """Hash of the problem's own numbers, as certificates seal theirs; found if left empty."""
 
     def __post_init__(self) -> None:
         if self.handling not in tuple(Handling):
@@ -198,23 +182,10 @@ class Row:
     @classmethod
     def begun(cls, trial: Trial, **known: Any) -> Row:
         """The row of a trial, with further fields of its run if they are known."""
-        reported, feasible = known.get("reported_time"), known.get("feasible_time")
-        return cls(
-            key=trial.key,
-            problem=trial.name,
-            reading=trial.reading,
-            problem_sha256=trial.problem_sha256,
-            optimizer=trial.optimizer,
-            settings=trial.settings,
-            origin=trial.origin,
-            handling=trial.handling,
-            seed=trial.seed,
-            stream=trial.stream,
-            budget=trial.budget,
-            segments=trial.problem.segments,
-            **known,
-            **_gaps(trial.reference, reported, feasible),
-        )
+        alike = ("key", "reading", "problem_sha256", "optimizer", "settings", "origin", "handling")
+        same = {name: getattr(trial, name) for name in (*alike, "seed", "stream", "budget")}
+        row = cls(problem=trial.name, segments=trial.problem.segments, **same, **known)
+        return against(row, trial.reference)
 
     @property
     def feasible(self) -> bool:
@@ -254,12 +225,15 @@ class Row:
 
 
 @lru_cache(maxsize=64)
-def checkpoints(evaluations: int) -> tuple[int, ...]:
-    """Log-spaced numbers of evaluations from 1 to the last, which is always among them."""
+def checkpoints(evaluations: int, per_decade: int = 32) -> tuple[int, ...]:
+    """Log-spaced numbers of evaluations from 1 to the last, which is always among them.
+
+    By default 7 % apart, which is finer than two seeds differ.
+    """
     if evaluations < 1:
         return ()
-    steps = math.floor(math.log10(evaluations) * _PER_DECADE)
-    spaced = {round(10 ** (k / _PER_DECADE)) for k in range(steps + 1)}
+    steps = math.floor(math.log10(evaluations) * per_decade)
+    spaced = {round(10 ** (k / per_decade)) for k in range(steps + 1)}
     return tuple(sorted({min(point, evaluations) for point in spaced} | {evaluations}))
 
 
@@ -288,21 +262,17 @@ def failed(trial: Trial, message: str) -> Row:
 
 def against(row: Row, reference: Bracket | None) -> Row:
     """The same row with gaps relative to another reference, or without gaps."""
-    return replace(row, **_gaps(reference, row.reported_time, row.feasible_time))
 
+    def gap(time: float | None) -> tuple[float, float] | None:
+        return None if reference is None or time is None else reference.gap(time)
 
-def _gaps(
-    reference: Bracket | None, reported: float | None, feasible: float | None
-) -> dict[str, Any]:
-    """What a row says of a reference."""
-    if reference is None:
-        return dict.fromkeys(("reference_upper", "reference_lower", "reported_gap", "feasible_gap"))
-    return {
-        "reference_upper": reference.upper,
-        "reference_lower": reference.lower,
-        "reported_gap": None if reported is None else reference.gap(reported),
-        "feasible_gap": None if feasible is None else reference.gap(feasible),
-    }
+    return replace(
+        row,
+        reference_upper=None if reference is None else reference.upper,
+        reference_lower=None if reference is None else reference.lower,
+        reported_gap=gap(row.reported_time),
+        feasible_gap=gap(row.feasible_time),
+    )
 
 
 def settings_of(row: Row | Trial) -> Mapping[str, Any]:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
 from .engines import Engine, outcomes
 from .rows import Row, RowStatus, Trial
 from .store import Store
 from .studies import StudyPlan
-
-_SOFTWARE = ("trajgap", "numpy", "scipy", "casadi", "numba")
-"""Packages whose versions are kept with the rows: they can change the last digit of a run."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +80,8 @@ def run_study(
     progress(session)
     for outcome in outcomes(unfinished(study, store, retry), engine):
         store.put(outcome.row, outcome.seconds)
-        session = StudySession(
-            total=session.total,
-            resumed=session.resumed,
+        session = replace(
+            session,
             run=session.run + 1,
             failed=session.failed + (outcome.row.status is RowStatus.FAILED),
             seconds=session.seconds + outcome.seconds,
@@ -103,8 +99,9 @@ def study_rows(study: StudyPlan, store: Store) -> Iterator[Row]:
 
 
 def _software() -> str:
+    """Versions that are kept with the rows: they can change the last digit of a run."""
     found = [f"Python {platform.python_version()}", platform.platform()]
-    for name in _SOFTWARE:
+    for name in ("trajgap", "numpy", "scipy", "casadi", "numba"):
         try:
             found.append(f"{name} {version(name)}")
         except PackageNotFoundError:

@@ -15,7 +15,6 @@ from ..documents import (
     Standing,
     TargetReached,
     Why,
-    known,
     value_or_none,
 )
 from .optimality_gap import gap
@@ -29,14 +28,8 @@ from .targets import (
     success_interval,
 )
 
-_QUANTILES = (0.0, 0.25, 0.5, 0.75)
-"""Best, lower quartile, median, upper quartile."""
 _NO_ANSWER = "as many runs found no feasible answer"
 """Why a quantile is missing."""
-_NEVER = "no run reached it"
-"""Why a running time is missing."""
-_UNBOUNDED = "in some samples of the runs none reached it"
-"""Why an end of a running time's interval is missing."""
 
 
 def totals_of(rows: Sequence[Row]) -> Array:
@@ -89,7 +82,7 @@ def _order(standing: Standing) -> tuple[float, float]:
 
 def _standing(label: str, rows: Sequence[Row], reference: Reference) -> Standing:
     totals = totals_of(rows)
-    ends = quantiles(totals, _QUANTILES)
+    ends = quantiles(totals, (0.0, 0.25, 0.5, 0.75))
     best, low, median, high = (_gap(total, reference.upper) for total in ends)
     base = value_or_none(reference.lower)
     failed = [row for row in rows if row.status is RowStatus.FAILED]
@@ -105,7 +98,7 @@ def _standing(label: str, rows: Sequence[Row], reference: Reference) -> Standing
         lower_quartile=low,
         median=median,
         upper_quartile=high,
-        median_total=known(float(ends[2]) if np.isfinite(ends[2]) else None, _NO_ANSWER),
+        median_total=_finite(float(ends[2]), _NO_ANSWER),
         median_highest=Why("no lower bound is certified") if base is None else _gap(ends[2], base),
         evaluations=float(np.median([row.evaluations for row in rows])),
         targets=tuple(_target(rows, reference.upper, one) for one in TARGETS),
@@ -124,7 +117,7 @@ def _messages(rows: Sequence[Row]) -> tuple[str, ...]:
 
 
 def _gap(total: float, base: float) -> float | Why:
-    return float(total / base - 1) if np.isfinite(total) else Why(_NO_ANSWER)
+    return _finite(float(total / base - 1), _NO_ANSWER)
 
 
 def _target(rows: Sequence[Row], optimum: float, wanted: float) -> TargetReached:
@@ -145,15 +138,17 @@ def target_reached(wanted: float, hits: Array, spent: Array) -> TargetReached:
     reached = int(np.isfinite(hits).sum())
     lowest, highest = success_interval(reached, hits.size)
     low, high = running_time_interval(hits, spent)
+    never = "no run reached it"
+    unbounded = "in some samples of the runs none reached it"
     return TargetReached(
         gap=wanted,
         reached=reached,
         rate=reached / hits.size,
         rate_lowest=lowest,
         rate_highest=highest,
-        evaluations=_finite(expected_running_time(hits, spent), _NEVER),
-        evaluations_lowest=_finite(low, _NEVER),
-        evaluations_highest=_finite(high, _NEVER if not reached else _UNBOUNDED),
+        evaluations=_finite(expected_running_time(hits, spent), never),
+        evaluations_lowest=_finite(low, never),
+        evaluations_highest=_finite(high, unbounded if reached else never),
     )
 
 

@@ -14,8 +14,6 @@ from .rows import ROW_FORMAT, Bracket, Row, RowStatus
 
 _APPLICATION = 0x7472676A
 """SQLite's application id of our stores, "trgj": a database of somebody else is not touched."""
-_BUSY = 60.0
-"""Seconds to wait while another process writes: one row takes milliseconds."""
 _TABLES = """
 CREATE TABLE runs (
     key TEXT PRIMARY KEY, status TEXT NOT NULL, row TEXT NOT NULL, seconds REAL NOT NULL
@@ -49,8 +47,9 @@ class Store:
         self.path = path
         check_regular(path)
         with self._telling():
-            # Every statement is its own transaction, unless `_writing` says otherwise.
-            self._data = sqlite3.connect(path, timeout=_BUSY, isolation_level=None)
+            # Every statement is its own transaction, unless `_writing` says otherwise. It waits for
+            # other processes, whose rows take milliseconds each.
+            self._data = sqlite3.connect(path, timeout=60.0, isolation_level=None)
         try:
             with self._telling():
                 self._prepare()

@@ -9,8 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from ...heuristics import Bounds, Handling, find_optimizer, judge_of, search_box
 from ...problem import (
     Case,
@@ -24,7 +22,7 @@ from ...problem import (
     published_ids,
     read_text,
 )
-from ...problem.cases import SUITE_PREFIX, Statement, all_faults, refusal
+from ...problem.cases import SUITE_PREFIX, Statement, check_format, validated
 from ...problem.suite import instance_of, select_instances
 from .benching import (
     WITHOUT_DRAWS,
@@ -36,7 +34,7 @@ from .benching import (
 from .optimality_gap import bracket_of
 from .rows import Bracket, Trial, canonical
 from .store import Store
-from .study_file import STUDY_FORMAT, OptimizerBlock, ProblemsBlock, StudyFile
+from .study_file import OptimizerBlock, ProblemsBlock, StudyFile
 from .trials import DESCENT
 
 
@@ -170,15 +168,8 @@ def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
         As `load_study`.
     """
     raw = parse_toml(text, file)
-    version = raw.get("format")
-    if version != STUDY_FORMAT or isinstance(version, bool):
-        given = "is missing" if version is None else f"is {version!r}"
-        raise CaseError(file, "format", f"{given}; write `format = {STUDY_FORMAT}`")
-    try:
-        document = StudyFile.model_validate(raw)
-    except ValidationError as error:
-        raise refusal(file, all_faults(error)) from None
-    document, missing = _check_optimizers(document, file)
+    check_format(raw, file)
+    document, missing = _check_optimizers(validated(StudyFile, raw, file), file)
     problems = tuple(
         entry
         for at, block in enumerate(document.problems)

@@ -10,15 +10,6 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from ...heuristics import Handling, optimizer_name
 from ...problem import Coupling, Strict
 
-STUDY_FORMAT = 1
-"""The version of the study file format that this module reads."""
-_MOST = 1_000_000
-"""Largest number of seeds: more runs than anybody has stored."""
-_LONGEST = 86_400.0
-"""Largest time limit of one run, s: a day."""
-_SECONDS = 600.0
-"""Time limit of one run, s: thousands of times what a paper's budget takes."""
-
 
 def _several(raw: object) -> object:
     """One value stands for a list of one."""
@@ -88,7 +79,7 @@ class StudyFile(Strict):
         Handling.DEATH_PENALTY,
     )
     """Treatment of vectors that break a limit."""
-    seeds: Annotated[int, Field(strict=True, ge=1, le=_MOST)] = 30
+    seeds: Annotated[int, Field(strict=True, ge=1, le=10**6)] = 30
     """Number of seeds: independent runs of each combination."""
     first_seed: Annotated[int, Field(strict=True, ge=0, le=2**62)] = 0
     """The first of them; the others follow it."""
@@ -98,5 +89,5 @@ class StudyFile(Strict):
     6000."""
     installed_only: bool = False
     """Whether optimisers whose package is missing are left out, instead of refused."""
-    seconds: Annotated[float, Field(gt=0, le=_LONGEST)] = _SECONDS
+    seconds: Annotated[float, Field(gt=0, le=86_400.0)] = 600.0
     """A run that takes longer has failed."""

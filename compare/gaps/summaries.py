@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -22,8 +23,6 @@ millionth above it, as the curves of a bench."""
 SOLVED = (0.01, 1e-3, 1e-4)
 """Gaps of `LADDER` that tables show: 1 % and 0.1 % are what papers' printed digits can tell apart,
 0.01 % is below them."""
-_QUANTILES = (0.25, 0.5, 0.75)
-"""Lower quartile, median, upper quartile."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
     assert optimum is not None
     hits = np.array([[hit(row, optimum * (1 + gap)) for row in rows] for gap in LADDER])
     ended = np.array([row.spent for row in rows])
-    gaps = quantiles(totals_of(rows) / optimum - 1, _QUANTILES)
+    gaps = quantiles(totals_of(rows) / optimum - 1, (0.25, 0.5, 0.75))
     low, median, high = (float(f"{gap:.4g}") for gap in gaps)
     asked = [LADDER.index(gap) for gap in SOLVED]
     return Summary(
@@ -117,19 +116,14 @@ def summaries_text(found: Iterable[Summary]) -> str:
 
 def read_summaries(text: str) -> tuple[Summary, ...]:
     """Summaries of their CSV."""
+    readers: dict[Any, Callable[[str], Any]] = {
+        "str": str,
+        "int": int,
+        "float": float,
+        "tuple[int, ...]": lambda cell: tuple(map(int, cell.split())),
+    }
+    kinds = {field.name: readers[field.type] for field in fields(Summary)}
     return tuple(
-        Summary(
-            problem=row["problem"],
-            optimizer=row["optimizer"],
-            handling=row["handling"],
-            budget=int(row["budget"]),
-            runs=int(row["runs"]),
-            failed=int(row["failed"]),
-            lower_quartile=float(row["lower_quartile"]),
-            median=float(row["median"]),
-            upper_quartile=float(row["upper_quartile"]),
-            within=tuple(map(int, row["within"].split())),
-            spent=tuple(map(int, row["spent"].split())),
-        )
+        Summary(**{name: kinds[name](cell) for name, cell in row.items()})
         for row in csv.DictReader(io.StringIO(text))
     )

@@ -12,8 +12,6 @@ from ...problem import Array
 from .rows import Row
 from .statistics import SAMPLES, interval, quantiles
 
-_Z = 1.959963984540054
-"""Quantile of the normal distribution at 97.5 %."""
 TARGETS = (0.1, 0.01, 1e-3, 1e-4, 1e-6)
 """Relative gaps that are asked for: 10 % is a poor answer, 1 % and 0.1 % are what papers' printed
 digits can tell apart, 0.01 % is below them, 1e-6 is a solver's answer."""
@@ -85,9 +83,10 @@ def running_time_interval(hits: Array, evaluations: Array) -> tuple[float, float
 def success_interval(successes: int, runs: int) -> tuple[float, float]:
     """95 % interval of a success rate (Wilson): shares p within z standard errors √(p(1 − p)/n)."""
     share = successes / runs
-    whole = 2 * (runs + _Z**2)
-    middle = (2 * runs * share + _Z**2) / whole
-    reach = _Z / whole * math.sqrt(4 * runs * share * (1 - share) + _Z**2)
+    z = 1.959963984540054  # 97.5 % of the normal distribution
+    whole = 2 * (runs + z**2)
+    middle = (2 * runs * share + z**2) / whole
+    reach = z / whole * math.sqrt(4 * runs * share * (1 - share) + z**2)
     low = 0.0 if successes == 0 else middle - reach
     return low, 1.0 if successes == runs else middle + reach
 

@@ -11,7 +11,7 @@ import random
 import time
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from hashlib import sha256
@@ -24,34 +24,21 @@ from ...heuristics import KINDS, Algorithm, BudgetedRun, Search, find_optimizer,
 from ...problem import Problem, TrajgapError, check, visible
 from .rows import Row, Trial, failed, settings_of, trace_of
 
-_LONGEST_MESSAGE = 300
-"""Characters of a message that are kept: optimisers may print whole arrays into theirs."""
-
-LIBRARIES = {"scipy": "scipy", "mealpy": "mealpy", "pymoo": "pymoo", "pygmo": "pygmo", "cma": "cma"}
-"""Distribution that an optimiser's prefix names: its version can change what a run finds."""
-
 DESCENT = "descent"
 """What a study calls this package's own solver: it is not an optimiser that a paper could use,
 since it knows the derivatives of the limits, and stands beside them as a reference."""
 
-_MOST_PROBLEMS = 64
-"""Problems that a process remembers."""
 _PROBLEMS: dict[str, Problem] = {}
-"""By their hashes: what is compiled for a curve belongs to its object."""
+"""Those that a process remembers, by their hashes: what is compiled for a curve belongs to it."""
 
 
 @dataclass(frozen=True)
 class TrialOutcome:
-    """A row, and the measured time, which differs from run to run.
-
-    Attributes
-    ----------
-    seconds : float
-        That the run took.
-    """
+    """A row, and the measured time, which differs from run to run."""
 
     row: Row
     seconds: float
+    """That the run took."""
 
 
 @lru_cache(maxsize=256)
@@ -70,8 +57,9 @@ def origin_of(optimizer: str) -> str:
     """
     prefix, _, rest = optimizer.partition(":")
     try:
-        if prefix in LIBRARIES:
-            return f"{prefix} {importlib.metadata.version(LIBRARIES[prefix])}"
+        # Distributions that a prefix names: their version can change what a run finds.
+        if prefix in ("scipy", "mealpy", "pymoo", "pygmo", "cma"):
+            return f"{prefix} {importlib.metadata.version(prefix)}"
         found = importlib.util.find_spec(prefix) if rest else None
         if found is not None and found.origin is not None:
             return f"sha256:{sha256(Path(found.origin).read_bytes()).hexdigest()}"
@@ -85,13 +73,9 @@ def _alone(trial: Trial) -> Iterator[None]:
     """Let a run depend on nothing that its process happens to have set, and put all of it back."""
     with warnings.catch_warnings(), np.errstate():
         warnings.simplefilter("ignore")
-        if (
-            trial.optimizer in KINDS
-        ):  # they draw from the generator that they are given, and no other
+        # Those of the papers draw from the generator that they are given, and no other.
+        with nullcontext() if trial.optimizer in KINDS else _seeded(trial):
             yield
-        else:
-            with _seeded(trial):
-                yield
 
 
 @contextmanager
@@ -166,7 +150,7 @@ def measured_trial(trial: Trial) -> TrialOutcome:
     for stream in (1, 2):
         os.dup2(nothing, stream)
     os.close(nothing)
-    if len(_PROBLEMS) >= _MOST_PROBLEMS:
+    if len(_PROBLEMS) >= 64:
         _PROBLEMS.clear()
     known = replace(trial, problem=_PROBLEMS.setdefault(trial.problem_sha256, trial.problem))
     begun = time.monotonic()
@@ -185,7 +169,8 @@ def _said(error: BaseException) -> str:
 def shortened(message: str) -> str:
     """A message in one line of bounded length, of characters that can be seen and written."""
     text = visible(" ".join(message.split()).removesuffix(":"))
-    return text if len(text) <= _LONGEST_MESSAGE else text[: _LONGEST_MESSAGE - 1] + "…"
+    # Optimisers may print whole arrays into theirs.
+    return text if len(text) <= 300 else text[:299] + "…"
 
 
 def _descended(trial: Trial) -> Row:

@@ -69,33 +69,6 @@ class Ties(StrEnum):
 class ConstrainedPSO:
     """Constrained PSO of `irb460-pso-353`, (24)(25) and Steps 1–9, and its settings.
 
-    Parameters
-    ----------
-    particles : int
-        Not printed.
-    iterations : int
-        Moves of the swarm; printed.
-    c1, c2 : float
-        Learning factors y1, y2; not printed.
-    inertia_max, inertia_min : float
-        Not printed.
-    inertia_rule : InertiaRule
-        "fitness", "linear" or "fixed"; not printed.
-    position_max : float
-        x_max, s; not printed.
-    position_rule : RangeRule
-        "symmetric" (printed) or "bounds".
-    velocity_max : float
-        v_max, s per iteration; not printed. Initial velocities are drawn from [−v_max, v_max].
-    position_initial : tuple of float
-        Range that the initial durations are drawn from, s; not printed.
-    ties : Ties
-        "random" or "keep".
-    draws : Draws
-        "coordinate", "particle" or "iteration"; not printed.
-    penalty : float
-        C, fitness of an infeasible particle, s; its value is not printed.
-
     Raises
     ------
     TrajgapError
@@ -113,19 +86,31 @@ class ConstrainedPSO:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     particles: Annotated[int, whole(1)] = 30
+    """Not printed."""
     iterations: Annotated[int, whole(0)] = 100
+    """Moves of the swarm; printed."""
     c1: Annotated[float, number()] = 2.0
     c2: Annotated[float, number()] = 2.0
+    """Learning factors y1, y2; not printed."""
     inertia_max: Annotated[float, number()] = 0.9
     inertia_min: Annotated[float, number()] = 0.4
+    """Not printed."""
     inertia_rule: InertiaRule = InertiaRule.FITNESS
+    """"fitness", "linear" or "fixed"; not printed."""
     position_max: Annotated[float, positive()] = 2.0
+    """x_max, s; not printed."""
     position_rule: RangeRule = RangeRule.SYMMETRIC
+    """"symmetric" (printed) or "bounds"."""
     velocity_max: Annotated[float, positive()] = 0.4
+    """v_max, s per iteration; not printed. Initial velocities are drawn from [−v_max, v_max]."""
     position_initial: Span = (0.1, 2.0)
+    """Range that the initial durations are drawn from, s; not printed."""
     ties: Ties = Ties.RANDOM
+    """"random" or "keep"."""
     draws: Draws = Draws.COORDINATE
+    """"coordinate", "particle" or "iteration"; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = 1e6
+    """C, fitness of an infeasible particle, s; its value is not printed."""
 
     def __post_init__(self) -> None:
         clean(self)

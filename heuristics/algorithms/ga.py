@@ -70,40 +70,8 @@ class Selection(StrEnum):
 
 
 @dataclass(frozen=True)
-class GA:
+class GA(Genetics):
     """Standard GA, the "traditional" one of `irb1600-ga-cubic-bspline`, and its settings.
-
-    Parameters
-    ----------
-    population : int
-        Even; not printed.
-    iterations : int
-        Generations after the initial one; not printed.
-    crossover_rate, mutation_rate : float
-        Not printed.
-    selection : Selection
-        "roulette" (said of it) or "tournament".
-    fitness_rule : FitnessRule
-        "inverse" or "complement"; not printed.
-    encoding : Encoding
-        "real" or "binary"; not printed.
-    resolution : float
-        Largest step of the binary encoding, s; printed as the time resolution.
-    position_range : tuple of float
-        Range that durations are drawn, encoded and mutated in, s; not printed.
-    crossover : Crossover
-        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings
-        acts on the numbers that they encode.
-    mutation : Mutation
-        "redraw" or "creep"; not printed. Bits are flipped.
-    mutated : MutationUnit
-        "gene" or "individual"; not printed.
-    mutation_reach : float
-        Half-width of "creep" as a share of the range; not printed.
-    elite : int
-        Best individuals that survive instead of the worst children; not printed.
-    penalty : float
-        Total of an infeasible individual, s; not printed.
 
     Raises
     ------
@@ -124,30 +92,40 @@ class GA:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40
+    """Even; not printed."""
     iterations: Annotated[int, whole(0)] = 200
+    """Generations after the initial one; not printed."""
     crossover_rate: Annotated[float, share()] = 0.8
     mutation_rate: Annotated[float, share()] = 0.05
+    """Not printed."""
     selection: Selection = Selection.ROULETTE
+    """"roulette" (said of it) or "tournament"."""
     fitness_rule: FitnessRule = FitnessRule.INVERSE
+    """"inverse" or "complement"; not printed."""
     encoding: Encoding = Encoding.REAL
+    """"real" or "binary"; not printed."""
     resolution: Annotated[float, positive()] = 0.001
+    """Largest step of the binary encoding, s; printed as the time resolution."""
     position_range: Span = (0.1, 2.0)
+    """Range that durations are drawn, encoded and mutated in, s; not printed."""
     crossover: Crossover = Crossover.ARITHMETIC
+    """"arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings acts
+    on the numbers that they encode."""
     mutation: Mutation = Mutation.REDRAW
+    """"redraw" or "creep"; not printed. Bits are flipped."""
     mutated: MutationUnit = MutationUnit.GENE
+    """"gene" or "individual"; not printed."""
     mutation_reach: Annotated[float, share()] = 0.1
+    """Half-width of "creep" as a share of the range; not printed."""
     elite: Annotated[int, whole(0)] = 0
+    """Best individuals that survive instead of the worst children; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """Total of an infeasible individual, s; not printed."""
 
     def __post_init__(self) -> None:
         clean(self)
         check_population(self.kind, self.population, self.elite, 2)
         check_range(self.kind, self.position_range)
-
-    @property
-    def genetics(self) -> Genetics:
-        """Encoding and operators."""
-        return genetics_of(self)
 
     def parents(self, fitness: Array, rng: np.random.Generator) -> NDArray[np.intp]:
         """Draw as many parents as individuals."""
@@ -163,7 +141,7 @@ class GA:
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
         """Draw and judge the initial population."""
         drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
-        return first_population(self.genetics.on_lattice(drawn), objective)
+        return first_population(self.on_lattice(drawn), objective)
 
     def step(
         self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
@@ -172,7 +150,7 @@ class GA:
         fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
         pool = shuffled(members_of(before.positions, self.parents(fitness, rng)), rng)
         return bred(
-            before, pool, self.genetics, self.crossover_rate, self.mutation_rate, self.elite,
+            before, pool, self, self.crossover_rate, self.mutation_rate, self.elite,
             rng, objective,
         )  # fmt: skip
 
@@ -189,11 +167,6 @@ def check_range(kind: str, span: tuple[float, float]) -> None:
     """Refuse a range without width: nothing could be encoded or mutated."""
     if not span[0] < span[1]:
         raise reject(kind, "position_range", "has no width; give two different numbers")
-
-
-def genetics_of(settings: object) -> Genetics:
-    """Encoding and operators from the settings of the same names."""
-    return Genetics(**{name: getattr(settings, name) for name in Genetics.__dataclass_fields__})
 
 
 def bred(

@@ -5,7 +5,6 @@ Of populations that are bred side by side every array has one more axis, the fir
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
@@ -89,9 +88,8 @@ def fitness_values(totals: Array, penalty: float, rule: FitnessRule) -> Array:
     return fitness
 
 
-@dataclass(frozen=True)
 class Genetics:
-    """Encoding and operators; the fields are settings of the same names of `GA`."""
+    """Encoding and operators of algorithms with these settings."""
 
     encoding: Encoding
     crossover: Crossover
@@ -109,7 +107,7 @@ class Genetics:
         return max(1, steps.bit_length())
 
     @property
-    def step(self) -> float:
+    def spacing(self) -> float:
         """Distance of neighbouring lattice points of the binary encoding, s."""
         low, high = self.position_range
         return (high - low) / float((1 << self.bits) - 1)
@@ -117,7 +115,7 @@ class Genetics:
     def encoded(self, positions: Array) -> Array:
         """Bits of the nearest lattice points, most significant first, (..., durations·bits)."""
         low, high = self.position_range
-        index = np.rint((held(positions, low, high) - low) / self.step).astype(np.int64)
+        index = np.rint((held(positions, low, high) - low) / self.spacing).astype(np.int64)
         places = np.arange(self.bits)[::-1]
         bits = (index[..., None] >> places) & 1
         return bits.reshape(*positions.shape[:-1], -1).astype(np.float64)
@@ -126,7 +124,7 @@ class Genetics:
         """Positions of bit strings, s."""
         powers = 2.0 ** np.arange(self.bits)[::-1]
         index = bits.reshape(*bits.shape[:-1], -1, self.bits) @ powers
-        decoded: Array = self.position_range[0] + index * self.step
+        decoded: Array = self.position_range[0] + index * self.spacing
         return decoded
 
     def on_lattice(self, positions: Array) -> Array:

@@ -19,7 +19,6 @@ from .ga import (
     bred,
     check_population,
     check_range,
-    genetics_of,
 )
 from .genes import (
     Crossover,
@@ -111,32 +110,8 @@ THIRD = math.asin(0.5) / (math.pi / 2)
 
 
 @dataclass(frozen=True)
-class ImprovedGA:
+class ImprovedGA(Genetics):
     """Improved GA of `irb1600-ga-cubic-bspline`, (12)–(15), and its settings.
-
-    Parameters
-    ----------
-    population : int
-        N, a multiple of 4; not printed.
-    iterations : int
-        Z, generations after the initial one; not printed. Also the Z of (13).
-    q_best, q_worst : float
-        q_y and q_s of (13), between 0 and 1; not printed.
-    pool_rule : PoolRule
-        "fill" or "double-best"; not printed.
-    best_quarter : BestQuarter
-        "parents" or "survives"; the text leaves it open.
-    k1, k2, k3, k4 : float
-        Constants of (14)(15); printed.
-    adaptive_crossover, adaptive_mutation : bool
-        Whether the rate is that of (14) or (15), as printed; otherwise the fixed one, to see what
-        adapting it changes.
-    crossover_fixed, mutation_fixed : float
-        Rates where they are not adaptive; those of `GA`, not printed.
-    fitness_rule, encoding, resolution, position_range, crossover, mutation, mutated
-        As `GA`; not printed, the resolution apart.
-    mutation_reach, penalty
-        As `GA`; not printed.
 
     Raises
     ------
@@ -155,19 +130,28 @@ class ImprovedGA:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40
+    """N, a multiple of 4; not printed."""
     iterations: Annotated[int, whole(0)] = 200
+    """Z, generations after the initial one; not printed. Also the Z of (13)."""
     q_best: Annotated[float, share(ends=False)] = 0.2
     q_worst: Annotated[float, share(ends=False)] = 0.05
+    """q_y and q_s of (13), between 0 and 1; not printed."""
     pool_rule: PoolRule = PoolRule.FILL
+    """"fill" or "double-best"; not printed."""
     best_quarter: BestQuarter = BestQuarter.PARENTS
+    """"parents" or "survives"; the text leaves it open."""
     k1: Annotated[float, number()] = 1.0
     k2: Annotated[float, number()] = 0.05
     k3: Annotated[float, number()] = 0.02
     k4: Annotated[float, number()] = 2.0
+    """Constants of (14)(15); printed."""
     adaptive_crossover: Annotated[bool, switch()] = True
     adaptive_mutation: Annotated[bool, switch()] = True
+    """Whether the rate is that of (14) or (15), as printed; otherwise the fixed one, to see what
+    adapting it changes."""
     crossover_fixed: Annotated[float, share()] = 0.8
     mutation_fixed: Annotated[float, share()] = 0.05
+    """Rates where they are not adaptive; those of `GA`, not printed."""
     fitness_rule: FitnessRule = FitnessRule.INVERSE
     encoding: Encoding = Encoding.REAL
     resolution: Annotated[float, positive()] = 0.001
@@ -175,8 +159,10 @@ class ImprovedGA:
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
     mutated: MutationUnit = MutationUnit.GENE
+    """As `GA`; not printed, the resolution apart."""
     mutation_reach: Annotated[float, share()] = 0.1
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """As `GA`; not printed."""
 
     def __post_init__(self) -> None:
         clean(self)
@@ -184,11 +170,6 @@ class ImprovedGA:
         check_range(self.kind, self.position_range)
         if self.q_worst > self.q_best:
             raise reject(self.kind, "q_worst", "exceeds q_best")
-
-    @property
-    def genetics(self) -> Genetics:
-        """Encoding and operators."""
-        return genetics_of(self)
 
     def rates(self, fitness: Array) -> tuple[Rate, Rate]:
         """P_c and P_z of a population, (14)(15), or the fixed ones."""
@@ -224,7 +205,7 @@ class ImprovedGA:
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
         """Draw and judge the initial population."""
         drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
-        return first_population(self.genetics.on_lattice(drawn), objective)
+        return first_population(self.on_lattice(drawn), objective)
 
     def step(
         self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
@@ -235,4 +216,4 @@ class ImprovedGA:
         chosen = self.parents(before.fitness, before.iteration + 1, rng)
         pool = shuffled(members_of(before.positions, chosen), rng)
         elite = self.population // 4 if self.best_quarter is BestQuarter.SURVIVES else 0
-        return bred(before, pool, self.genetics, crossing, mutating, elite, rng, objective)
+        return bred(before, pool, self, crossing, mutating, elite, rng, objective)

@@ -77,31 +77,6 @@ def inertia_weight(i: int, iterations: int, s: float) -> float:
 class ImprovedWOA:
     """Improved WOA of `z1-woa-bspline`, (21)–(23) and Steps 1–6, and its settings.
 
-    Parameters
-    ----------
-    whales : int
-        Printed.
-    iterations : int
-        T, moves of the population; printed. Also the T of (22) and of δ.
-    s : float
-        Constant of (22), above −1; not printed.
-    exploration : Exploration
-        "kept", "weighted" or "dropped"; (21) and Step 3 disagree.
-    initial : InitialRule
-        "tent" (printed) or "uniform".
-    tent_rule : TentRule
-        "coordinate", "member" or "single"; not printed.
-    beta : float
-        β of (23); printed.
-    spiral, threshold, coefficients, threshold_rule, r_rule, counter, replacement
-        As `WOA`; not printed.
-    position_initial : tuple of float
-        Range that the initial population fills, s; printed.
-    position_rule : PositionRule
-        "bounds", "initial" or "free"; not printed.
-    penalty : float
-        Fitness of an infeasible whale, s; not printed.
-
     Raises
     ------
     TrajgapError
@@ -118,12 +93,19 @@ class ImprovedWOA:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     whales: Annotated[int, whole(1)] = 30
+    """Printed."""
     iterations: Annotated[int, whole(0)] = 500
+    """T, moves of the population; printed. Also the T of (22) and of δ."""
     s: Annotated[float, above(-1.0)] = 0.0
+    """Constant of (22), above −1; not printed."""
     exploration: Exploration = Exploration.KEPT
+    """"kept", "weighted" or "dropped"; (21) and Step 3 disagree."""
     initial: InitialRule = InitialRule.TENT
+    """"tent" (printed) or "uniform"."""
     tent_rule: TentRule = TentRule.COORDINATE
+    """"coordinate", "member" or "single"; not printed."""
     beta: Annotated[float, share(ends=False)] = 0.5
+    """β of (23); printed."""
     spiral: Annotated[float, number()] = 1.0
     threshold: Annotated[float, number(infinite=True)] = 1.0
     coefficients: Coefficients = Coefficients.WHALE
@@ -131,9 +113,13 @@ class ImprovedWOA:
     r_rule: RRule = RRule.SEPARATE
     counter: Counter = Counter.ZERO
     replacement: Replacement = Replacement.ALWAYS
+    """As `WOA`; not printed."""
     position_initial: Span = (0.0, 5.0)
+    """Range that the initial population fills, s; printed."""
     position_rule: PositionRule = PositionRule.BOUNDS
+    """"bounds", "initial" or "free"; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """Fitness of an infeasible whale, s; not printed."""
 
     def __post_init__(self) -> None:
         clean(self)

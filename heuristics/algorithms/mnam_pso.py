@@ -81,40 +81,6 @@ class MutatedCoordinates(StrEnum):
 class MNAMPSO:
     """MNAM-PSO of `puma560-mnam-pso-353`, (10)–(12) and Steps 1–6, and its settings.
 
-    Parameters
-    ----------
-    particles : int
-        S; printed.
-    iterations : int
-        N, moves of the swarm; printed. Also the N of (12): another budget is another schedule.
-    niches : int
-        m; printed.
-    c1, c2 : float
-        Learning factors; printed.
-    inertia_max, inertia_min : float
-        ω_max, ω_min; printed.
-    inertia_reading : InertiaReading
-        "falls" or "rises": (12) and the text disagree.
-    niches_rule : NichesRule
-        "stratified", "diagonal" or "clusters"; not in the text.
-    mutated : MutatedCoordinates
-        "all" or "one"; not in the text.
-    mutation_scale : float
-        Mutation bound as a multiple of the smallest coordinate of the global best; not in the
-        text. With 1 no mutated duration is negative.
-    position_initial : tuple of float
-        Range that the initial durations are drawn from, s; printed.
-    velocity_initial : tuple of float
-        Range that the initial velocities are drawn from, s per iteration; printed.
-    velocity_rule : VelocityRule
-        "clamp" or "free"; not printed.
-    position_rule : PositionRule
-        "bounds", "initial" or "free"; not printed. Mutants are not moved, only judged.
-    draws : Draws
-        "coordinate", "particle" or "iteration"; not printed.
-    penalty : float
-        Fitness of an infeasible particle, s; printed.
-
     Raises
     ------
     TrajgapError
@@ -133,22 +99,38 @@ class MNAMPSO:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     particles: Annotated[int, whole(1)] = 30
+    """S; printed."""
     iterations: Annotated[int, whole(0)] = 200
+    """N, moves of the swarm; printed. Also the N of (12): another budget is another schedule."""
     niches: Annotated[int, whole(1)] = 3
+    """m; printed."""
     c1: Annotated[float, number()] = 2.0
     c2: Annotated[float, number()] = 2.0
+    """Learning factors; printed."""
     inertia_max: Annotated[float, number()] = 0.9
     inertia_min: Annotated[float, number()] = 0.4
+    """ω_max, ω_min; printed."""
     inertia_reading: InertiaReading = InertiaReading.FALLS
+    """"falls" or "rises": (12) and the text disagree."""
     niches_rule: NichesRule = NichesRule.STRATIFIED
+    """"stratified", "diagonal" or "clusters"; not in the text."""
     mutated: MutatedCoordinates = MutatedCoordinates.ALL
+    """"all" or "one"; not in the text."""
     mutation_scale: Annotated[float, number()] = 1.0
+    """Mutation bound as a multiple of the smallest coordinate of the global best; not in the text.
+    With 1 no mutated duration is negative."""
     position_initial: Span = (0.3, 3.0)
+    """Range that the initial durations are drawn from, s; printed."""
     velocity_initial: Span = (-2.0, 2.0)
+    """Range that the initial velocities are drawn from, s per iteration; printed."""
     velocity_rule: VelocityRule = VelocityRule.CLAMP
+    """"clamp" or "free"; not printed."""
     position_rule: PositionRule = PositionRule.BOUNDS
+    """"bounds", "initial" or "free"; not printed. Mutants are not moved, only judged."""
     draws: Draws = Draws.COORDINATE
+    """"coordinate", "particle" or "iteration"; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """Fitness of an infeasible particle, s; printed."""
 
     def __post_init__(self) -> None:
         clean(self)

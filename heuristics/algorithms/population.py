@@ -16,23 +16,16 @@ class Population:
 
     Of populations that move side by side every array and the best fitness have one more axis, the
     first.
-
-    Attributes
-    ----------
-    iteration : int
-        Moves made so far.
-    positions : ndarray, shape (members, dimensions)
-        In s if the dimensions are durations.
-    fitness : ndarray, shape (members,)
-        Of the positions; the smaller the better.
-    best : ndarray, shape (dimensions,)
-        Best position so far.
     """
 
     iteration: int
+    """Moves made so far."""
     positions: Array
+    """Shape (members, dimensions). In s if the dimensions are durations."""
     fitness: Array
+    """Shape (members,). Of the positions; the smaller the better."""
     best: Array
+    """Shape (dimensions,). Best position so far."""
     best_fitness: float | Array
 
 

@@ -44,29 +44,6 @@ OPEN_CHOICES = (
 class PSO:
     """Standard PSO of `puma560-mnam-pso-353`, (10)(11), and its settings.
 
-    Parameters
-    ----------
-    particles : int
-        S; printed for the improved algorithm.
-    iterations : int
-        N, moves of the swarm; printed for the improved algorithm.
-    c1, c2 : float
-        Learning factors; printed.
-    inertia : float
-        ω; fixed, its value is not printed.
-    position_initial : tuple of float
-        Range that the initial durations are drawn from, s; printed.
-    velocity_initial : tuple of float
-        Range that the initial velocities are drawn from, s per iteration; printed.
-    velocity_rule : VelocityRule
-        "clamp" or "free"; not printed.
-    position_rule : PositionRule
-        "bounds", "initial" or "free"; not printed.
-    draws : Draws
-        "coordinate", "particle" or "iteration"; not printed.
-    penalty : float
-        Fitness of an infeasible particle, s; printed.
-
     Raises
     ------
     TrajgapError
@@ -83,16 +60,26 @@ class PSO:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     particles: Annotated[int, whole(1)] = 30
+    """S; printed for the improved algorithm."""
     iterations: Annotated[int, whole(0)] = 200
+    """N, moves of the swarm; printed for the improved algorithm."""
     c1: Annotated[float, number()] = 2.0
     c2: Annotated[float, number()] = 2.0
+    """Learning factors; printed."""
     inertia: Annotated[float, number()] = 0.65
+    """ω; fixed, its value is not printed."""
     position_initial: Span = (0.3, 3.0)
+    """Range that the initial durations are drawn from, s; printed."""
     velocity_initial: Span = (-2.0, 2.0)
+    """Range that the initial velocities are drawn from, s per iteration; printed."""
     velocity_rule: VelocityRule = VelocityRule.CLAMP
+    """"clamp" or "free"; not printed."""
     position_rule: PositionRule = PositionRule.BOUNDS
+    """"bounds", "initial" or "free"; not printed."""
     draws: Draws = Draws.COORDINATE
+    """"coordinate", "particle" or "iteration"; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """Fitness of an infeasible particle, s; printed."""
 
     def __post_init__(self) -> None:
         clean(self)

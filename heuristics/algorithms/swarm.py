@@ -48,29 +48,21 @@ class Swarm:
     """All that one iteration of a particle swarm leaves to the next.
 
     Of swarms that move side by side every array and the best fitness have one more axis, the first.
-
-    Attributes
-    ----------
-    iteration : int
-        Moves made so far.
-    positions, velocities : ndarray, shape (particles, dimensions)
-        In s, and s per iteration, if the dimensions are durations.
-    fitness : ndarray, shape (particles,)
-        Of the positions.
-    personal : ndarray, shape (particles, dimensions)
-        Best position of each particle so far, p.
-    personal_fitness : ndarray, shape (particles,)
-    best : ndarray, shape (dimensions,)
-        Best position of the swarm so far, g.
     """
 
     iteration: int
+    """Moves made so far."""
     positions: Array
     velocities: Array
+    """Shape (particles, dimensions). In s, and s per iteration, if the dimensions are durations."""
     fitness: Array
+    """Shape (particles,). Of the positions."""
     personal: Array
+    """Shape (particles, dimensions). Best position of each particle so far, p."""
     personal_fitness: Array
+    """Shape (particles,)."""
     best: Array
+    """Shape (dimensions,). Best position of the swarm so far, g."""
     best_fitness: float | Array
 
 

@@ -95,27 +95,19 @@ def tent_population(
 
 @dataclass(frozen=True, eq=False)
 class TentCollapse:
-    """An orbit of the tent map in double precision and exactly.
-
-    Attributes
-    ----------
-    start : Fraction
-        Start as a decimal; the double orbit starts at the nearest double.
-    doubles : ndarray, shape (steps + 1,)
-    zero_at : int or None
-        First step at which the double orbit is exactly 0, where it stays.
-    exact_zero_at : int or None
-        The same for the exact orbit.
-    period : tuple of int or None
-        (n, p) if the exact orbit repeats itself from step n on every p steps.
-    """
+    """An orbit of the tent map in double precision and exactly."""
 
     start: Fraction
+    """Start as a decimal; the double orbit starts at the nearest double."""
     doubles: Array
+    """Shape (steps + 1,)."""
     exact: tuple[Fraction, ...]
     zero_at: int | None
+    """First step at which the double orbit is exactly 0, where it stays."""
     exact_zero_at: int | None
+    """The same for the exact orbit."""
     period: tuple[int, int] | None
+    """(n, p) if the exact orbit repeats itself from step n on every p steps."""
 
 
 def tent_collapse(

@@ -101,25 +101,17 @@ class Replacement(StrEnum):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Draw:
-    """Random numbers of one iteration, of shape (whales, 1) or (whales, dimensions).
-
-    Attributes
-    ----------
-    a, c : ndarray
-        The r of A and the r of C, in [0, 1).
-    g : ndarray, shape (whales, 1)
-        In [−1, 1).
-    chance : ndarray, shape (whales, 1)
-        λ, in [0, 1).
-    member : ndarray of int, shape (whales,)
-        Which whale is X_r.
-    """
+    """Random numbers of one iteration, of shape (whales, 1) or (whales, dimensions)."""
 
     a: Array
     c: Array
+    """The r of A and the r of C, in [0, 1)."""
     g: Array
+    """Shape (whales, 1). In [−1, 1)."""
     chance: Array
+    """Shape (whales, 1); λ, in [0, 1)."""
     member: NDArray[np.intp]
+    """Shape (whales,). Which whale is X_r."""
 
 
 def draw(
@@ -180,33 +172,6 @@ def replaced(
 class WOA:
     """WOA of `z1-woa-bspline`, (14)–(20), after Mirjalili & Lewis (2016), and its settings.
 
-    Parameters
-    ----------
-    whales : int
-        Printed.
-    iterations : int
-        T, moves of the population; printed. Also the T over which δ falls.
-    spiral : float
-        b of (17); not printed.
-    threshold : float
-        |A| from which a random whale is the target; not printed. ``inf`` never explores.
-    coefficients : Coefficients
-        "whale" or "coordinate"; not printed.
-    threshold_rule : ThresholdRule
-        "coordinate" or "length"; matters only with coefficients "coordinate"; not printed.
-    r_rule : RRule
-        "separate" or "shared"; (16) prints one letter.
-    counter : Counter
-        "zero" or "one"; not printed.
-    replacement : Replacement
-        "always" (as (19) says), "feasible" or "greedy"; Step 4 leaves it open.
-    position_initial : tuple of float
-        Range that the initial durations are drawn from, s; printed.
-    position_rule : PositionRule
-        "bounds", "initial" or "free"; not printed.
-    penalty : float
-        Fitness of an infeasible whale, s; not printed.
-
     Raises
     ------
     TrajgapError
@@ -223,17 +188,29 @@ class WOA:
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     whales: Annotated[int, whole(1)] = 30
+    """Printed."""
     iterations: Annotated[int, whole(0)] = 500
+    """T, moves of the population; printed. Also the T over which δ falls."""
     spiral: Annotated[float, number()] = 1.0
+    """b of (17); not printed."""
     threshold: Annotated[float, number(infinite=True)] = 1.0
+    """|A| from which a random whale is the target; not printed. ``inf`` never explores."""
     coefficients: Coefficients = Coefficients.WHALE
+    """"whale" or "coordinate"; not printed."""
     threshold_rule: ThresholdRule = ThresholdRule.COORDINATE
+    """"coordinate" or "length"; matters only with coefficients "coordinate"; not printed."""
     r_rule: RRule = RRule.SEPARATE
+    """"separate" or "shared"; (16) prints one letter."""
     counter: Counter = Counter.ZERO
+    """"zero" or "one"; not printed."""
     replacement: Replacement = Replacement.ALWAYS
+    """"always" (as (19) says), "feasible" or "greedy"; Step 4 leaves it open."""
     position_initial: Span = (0.0, 5.0)
+    """Range that the initial durations are drawn from, s; printed."""
     position_rule: PositionRule = PositionRule.BOUNDS
+    """"bounds", "initial" or "free"; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """Fitness of an infeasible whale, s; not printed."""
 
     def __post_init__(self) -> None:
         clean(self)

@@ -19,28 +19,19 @@ onto the bounds round there. It is set to the bound before it is judged."""
 
 @dataclass(frozen=True, eq=False)
 class BorrowedTask:
-    """The task that is passed to an optimiser.
-
-    Attributes
-    ----------
-    fun : callable
-        Fitness, s: of one position, shape (dimensions,), as a float; of a batch, shape
-        (batch, dimensions), as (batch,).
-    box : ndarray, shape (dimensions, 2)
-        Least and largest value of each coordinate, finite, s.
-    budget : int
-        Number of positions that may be evaluated; the search is stopped at the next one.
-    rng : numpy.random.Generator
-        The only source of randomness; see `number` for libraries that take a number.
-    penalty : float
-        Fitness of an infeasible position, s.
-    """
+    """The task that is passed to an optimiser."""
 
     fun: Callable[[Array], Any]
+    """Fitness, s: of one position, shape (dimensions,), as a float; of a batch, shape (batch,
+    dimensions), as (batch,)."""
     box: Array
+    """Shape (dimensions, 2). Least and largest value of each coordinate, finite, s."""
     budget: int
+    """Number of positions that may be evaluated; the search is stopped at the next one."""
     rng: np.random.Generator
+    """The only source of randomness; see `number` for libraries that take a number."""
     penalty: float
+    """Fitness of an infeasible position, s."""
 
     @property
     def lower(self) -> Array:
@@ -150,29 +141,20 @@ class Borrowed:
 
     Unlike for the papers' algorithms, which are run as printed, a position out of bounds or with a
     NaN is a fault of the search and ends it with a message.
-
-    Parameters
-    ----------
-    kind : str
-        Name of the search.
-    searching : callable
-        ``searching(task)``; picklable. Its return value is only checked for faults.
-    iterations : int
-        Blocks of evaluations after the first one.
-    per_iteration : int
-        Evaluations that count as one iteration.
-    penalty : float
-        Fitness of an infeasible position, s; finite, because many searches subtract.
-    options : mapping
-        Options that were passed to the search, for the record.
     """
 
     kind: str
+    """Name of the search."""
     searching: Callable[[BorrowedTask], object]
+    """``searching(task)``; picklable. Its return value is only checked for faults."""
     iterations: Annotated[int, whole(0)] = 5999
+    """Blocks of evaluations after the first one."""
     per_iteration: Annotated[int, whole(1)] = 1
+    """Evaluations that count as one iteration."""
     penalty: Annotated[float, positive()] = 1e6
+    """Fitness of an infeasible position, s; finite, because many searches subtract."""
     options: Mapping[str, object] = field(default_factory=dict, hash=False)
+    """Options that were passed to the search, for the record."""
 
     def __post_init__(self) -> None:
         clean(self)

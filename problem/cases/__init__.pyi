@@ -36,6 +36,8 @@ from .data_files import (
     PUBLISHED as PUBLISHED,
     SUITE_PREFIX as SUITE_PREFIX,
     case_files as case_files,
+    check_format as check_format,
+    validated as validated,
 )
 from .digits import Digits as Digits, end as end
 from .faults import all_faults as all_faults, refusal as refusal

@@ -60,19 +60,13 @@ class DurationBox:
 
 @dataclass(frozen=True)
 class Case:
-    """A loaded and checked case file.
-
-    Parameters
-    ----------
-    file : str
-        Name of the file, for messages.
-    sha256 : str or None
-        Hash of the file; None if the case was not read from a file.
-    """
+    """A loaded and checked case file."""
 
     document: CaseFile
     file: str
+    """Name of the file, for messages."""
     sha256: str | None = None
+    """Hash of the file; None if the case was not read from a file."""
 
     @property
     def id(self) -> str:

@@ -6,7 +6,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, model_validator
 
-from ..printed import CHOICES, MOST_ENTRIES, Id, Number, Strict, Text, TextOrEach, fault
+from ..files import MOST
+from ..printed import CHOICES, Id, Number, Strict, Text, TextOrEach, fault
 
 Known = Literal["velocity", "acceleration", "jerk"]
 """Derivatives that have a unit."""
@@ -28,7 +29,7 @@ class AxisClue(Clue):
     kind: Literal["axis"]
     quantity: Known
     unit: Text
-    ticks: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_ENTRIES)]
+    ticks: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST.entries)]
     """The labels as printed; their largest size counts, for signs may be lost."""
     of: Annotated[tuple[Id, ...], Field(min_length=1)]
     """The claims of durations whose motion the figure shows."""
@@ -50,7 +51,7 @@ class DataSheetClue(Clue):
     quantity: Known
     unit: TextOrEach
     """The unit of all values, or of each."""
-    values: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_ENTRIES)]
+    values: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST.entries)]
     """One for each of the robot's joints."""
 
     @model_validator(mode="after")

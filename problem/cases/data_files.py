@@ -28,22 +28,15 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Shipped:
-    """A package that holds data files of one kind.
-
-    Attributes
-    ----------
-    kind : str
-        What one of them is, for messages.
-    prefix : str
-        Stands before an id, so ids of several packages cannot be confused.
-    listed_by : str
-        The command that lists the ids, where they are too many for a message.
-    """
+    """A package that holds data files of one kind."""
 
     package: str
     kind: str
+    """What one of them is, for messages."""
     prefix: str = ""
+    """Stands before an id, so ids of several packages cannot be confused."""
     listed_by: str = ""
+    """The command that lists the ids, where they are too many for a message."""
 
     def ids(self) -> tuple[str, ...]:
         """Ids of the files, sorted."""
@@ -55,12 +48,8 @@ class Shipped:
         """The file of an id."""
         return files(self.package).joinpath(f"{id.removeprefix(self.prefix)}{_ENDING}")
 
-    def text(self, source: str | Path) -> str:
-        """Text of a shipped file by its id, or of another by its path; raises as `hashed`."""
-        return self.hashed(source)[0]
-
     def hashed(self, source: str | Path) -> tuple[str, str]:
-        """The same, with the SHA-256 of the file's bytes.
+        """Text of a shipped file by its id, or of another by its path, and the bytes' SHA-256.
 
         Raises
         ------

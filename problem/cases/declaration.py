@@ -40,19 +40,13 @@ Values = tuple[Number | tuple[Number, ...], ...]
 
 @dataclass(frozen=True)
 class Family:
-    """A kind of curve as case files name it.
-
-    Attributes
-    ----------
-    curve : callable
-        From the block, the number of way-points and the derivatives at both ends to the curve.
-    needed, allowed : tuple of str
-        Keys of the block that it asks for, and that it takes beside.
-    """
+    """A kind of curve as case files name it."""
 
     curve: Callable[[InterpolantBlock, int, Ends], Curve]
+    """From the block, the number of way-points and the derivatives at both ends to the curve."""
     needed: tuple[str, ...] = ()
     allowed: tuple[str, ...] = ()
+    """Keys of the block that it asks for, and that it takes beside."""
 
 
 def _polynomials(block: InterpolantBlock, count: int, ends: Ends) -> Curve:

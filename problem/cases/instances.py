@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import Field, StrictInt, field_validator
 
 from ..arrays import Array
-from ..printed import LARGEST_SEED, MOST_ENTRIES, Id, Length, Printed, Strict, Text, fault
+from ..files import MOST
+from ..printed import Id, Length, Printed, Strict, Text, fault
 from ..robots import Chain, StepKind, sample_workspace, waypoint_sequences
 
 Count = Annotated[StrictInt, Field(ge=1, le=10_000)]
@@ -25,11 +26,11 @@ class InstancesBlock(Strict):
     """Why such instances say something about the claim."""
     kind: Literal["joint", "end"] = "end"
     """What a step measures: the largest change of a joint, or the way of the end."""
-    steps: Annotated[tuple[Length, ...], Field(min_length=1, max_length=MOST_ENTRIES)]
+    steps: Annotated[tuple[Length, ...], Field(min_length=1, max_length=MOST.entries)]
     """Step lengths, rad where kind is "joint", m where it is "end"."""
     instances: Count
     """Instances of each step length."""
-    seed: Annotated[StrictInt, Field(ge=0, le=LARGEST_SEED)] = 0
+    seed: Annotated[StrictInt, Field(ge=0, le=MOST.seed)] = 0
     """Of the workspace and of the way-points."""
     samples: Annotated[StrictInt, Field(ge=1, le=1_000_000)] = 20_000
     """Positions of the workspace that way-points are drawn from."""

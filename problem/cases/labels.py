@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
+from ..characters import listed
 from ..limits import QUANTITIES
 from ..printed import CHOICES, is_linear, shown_unit
 from ..problem import Coupling
@@ -118,7 +119,7 @@ def _units(document: CaseFile, reading: Reading) -> Iterator[str]:
         unit = _key_value(document, reading, "units", quantity)
         if isinstance(unit, tuple | str):
             each = unit if isinstance(unit, tuple) else (unit,)
-            shown = _and([_SHOWN.get(one, shown_unit(one)) for one in dict.fromkeys(each)])
+            shown = listed([_SHOWN.get(one, shown_unit(one)) for one in dict.fromkeys(each)])
             linear = quantity == "position" and any(map(is_linear, each))
             yield f"{'positions' if linear else _UNITS[quantity]} in {shown}"
 
@@ -128,12 +129,12 @@ def _waypoints(document: CaseFile, reading: Reading) -> Iterator[str]:
     if own is not None:
         yield f"way-points of {own.where}" if own.where else "other way-points"
     if reading.joints is not None:
-        yield f"joint{'s' if len(reading.joints) > 1 else ''} {_and(reading.joints)} alone"
+        yield f"joint{'s' if len(reading.joints) > 1 else ''} {listed(reading.joints)} alone"
     turned = [joint for joint, turns in reading.turns.items() if any(turns)]
     if turned:
         every = [turn for joint in turned for turn in reading.turns[joint]]
         off = "taken off" if max(every) <= 0 else "added to"
-        yield f"whole turns {off} joint{'s' if len(turned) > 1 else ''} {_and(turned)}"
+        yield f"whole turns {off} joint{'s' if len(turned) > 1 else ''} {listed(turned)}"
 
 
 def _limits(document: CaseFile, reading: Reading) -> Iterator[str]:
@@ -179,7 +180,7 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield from _end_words("finish", block.last_orders, block.last_derivatives)
     if block.virtual:
         several = len(block.virtual) > 1
-        breaks = _and([str(b) for b in sorted(block.virtual)])
+        breaks = listed([str(b) for b in sorted(block.virtual)])
         yield f"virtual point{'s' if several else ''} at break{'s' if several else ''} {breaks}"
     if block.free:
         yield f"{block.free} free coefficient{'s' if block.free > 1 else ''}"
@@ -226,11 +227,6 @@ def _coupling(document: CaseFile, reading: Reading) -> Iterator[str]:
     if reading.coupling is not None:
         shared = reading.coupling is Coupling.SHARED
         yield "durations shared by the joints" if shared else "each joint timed separately"
-
-
-def _and(parts: Sequence[str]) -> str:
-    *most, last = parts or ("",)
-    return f"{', '.join(most)} and {last}" if most else last
 
 
 _ASPECTS: tuple[Callable[[CaseFile, Reading], Iterator[str]], ...] = (

@@ -113,17 +113,12 @@ _MISSPELT = 0.8
 
 @dataclass(frozen=True)
 class Meant:
-    """A curve as a case file declares it.
-
-    Attributes
-    ----------
-    note : str
-        What whoever fills in the file should know; may be empty.
-    """
+    """A curve as a case file declares it."""
 
     family: str
     keys: Mapping[str, object]
     note: str = ""
+    """What whoever fills in the file should know; may be empty."""
 
     def written(self) -> str:
         """The keys of the block, in one line."""

@@ -45,7 +45,7 @@ def load_robot(source: str | Path, convention: Convention | None = None) -> Chai
 
 def robot_file(source: str | Path) -> RobotFile:
     """Load a robot file with its source and its printed table."""
-    return _parsed(ROBOTS.text(source), str(source))
+    return _parsed(ROBOTS.hashed(source)[0], str(source))
 
 
 def parse_robot(text: str, file: str) -> RobotFile:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from ..characters import listed
 from ..errors import CaseError, TrajgapError
 from ..files import read_text
 from ..limits import QUANTITIES, Limits
@@ -25,37 +26,19 @@ from .waypoint_table import WaypointTable, add_digits, read_waypoint_table
 if TYPE_CHECKING:
     from jinja2 import Template
 
-_DERIVATIVES = ("acceleration", "velocity", "jerk")
-"""Derivatives of which peaks are printed, the most usual first."""
-
-_ROUND = 5
-"""Degrees of which angles that are settings are multiples: what is rounded to whole degrees seldom
-is, and hardly ever all of a table."""
-
-_POWERS = {"velocity": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
-"""What follows rad or m in the unit of a limit from a file."""
-
 
 @dataclass(frozen=True)
 class FileLimits:
-    """Limits of joints as a file states them, such as a URDF.
-
-    Attributes
-    ----------
-    joints : tuple of str
-        Names for the joints of the table, in its order.
-    limits : Limits
-        rad, m and s.
-    source : str
-        Name of the file.
-    doubt : str
-        Doubt about the limits, such as sides that they leave out, in a sentence; empty if none.
-    """
+    """Limits of joints as a file states them, such as a URDF."""
 
     joints: tuple[str, ...]
+    """Names for the joints of the table, in its order."""
     limits: Limits
+    """rad, m and s."""
     source: str
+    """Name of the file."""
     doubt: str = ""
+    """Doubt about the limits, such as sides that they leave out, in a sentence; empty if none."""
 
 
 def scaffold(
@@ -170,7 +153,10 @@ def scaffold(
             total=printed and json.dumps(printed),
             where=where and json.dumps(where, ensure_ascii=False),
             segments=segments,
-            derivative=next((one for one in _DERIVATIVES if one in checked), None),
+            # Of these derivatives peaks are printed, the most usual first.
+            derivative=next(
+                (one for one in ("acceleration", "velocity", "jerk") if one in checked), None
+            ),
         )
 
     try:
@@ -341,7 +327,8 @@ def _stated(
         below, above = limits.sides[:, :, order]
         if np.isinf(limits.sides[:, :, order]).all():
             continue
-        si = tuple(("m" if is_linear(one) else "rad") + _POWERS[key] for one in each(position))
+        per = "/s" if order == 0 else f"/s^{order + 1}"
+        si = tuple(("m" if is_linear(one) else "rad") + per for one in each(position))
         unit = units.get(key, si if len(set(si)) > 1 else si[0])
         added[key] = unit
         ends = zip(scaled(-below, unit), scaled(above, unit), strict=True)
@@ -362,8 +349,7 @@ def _one_or_each(numbers: Sequence[str]) -> str:
 
 def _named(stated: Iterable[str]) -> str:
     """Which limits are those of a file, in words."""
-    names = dict.fromkeys(key.partition("_")[0] for key in stated)
-    return f"limits of {' and '.join(filter(None, (', '.join([*names][:-1]), [*names][-1])))}"
+    return f"limits of {listed([*dict.fromkeys(key.partition('_')[0] for key in stated)])}"
 
 
 def _angles(table: WaypointTable, unit: str | tuple[str, ...]) -> dict[str, Any]:
@@ -373,7 +359,8 @@ def _angles(table: WaypointTable, unit: str | tuple[str, ...]) -> dict[str, Any]
     """
     cells = [cell for row in table.rows for cell in row]
     whole = {cell: int(cell.translate(MINUS_SIGNS)) for cell in cells if _whole(cell)}
-    exact = unit == "rad" or all(number % _ROUND == 0 for number in whole.values())
+    # Settings are multiples of 5°; angles rounded to whole degrees hardly ever all are.
+    exact = unit == "rad" or all(number % 5 == 0 for number in whole.values())
     rows = []
     for label, row in zip(table.labels, table.rows, strict=True):
         shown = [str(whole[cell]) if exact and cell in whole else _quoted(cell) for cell in row]

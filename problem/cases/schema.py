@@ -9,9 +9,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSchema, model_validator
 
 from ..errors import TrajgapError
+from ..files import MOST
 from ..printed import (
-    MOST_POSES,
-    MOST_WAYPOINTS,
     Id,
     JointLabels,
     Label,
@@ -105,7 +104,7 @@ class StraightLine(Strict):
     """Exact angles of the robot's joints at its start, one each."""
     last: tuple[Number, ...]
     """The same at its end."""
-    points: Annotated[StrictInt, Field(ge=2, le=MOST_POSES)]
+    points: Annotated[StrictInt, Field(ge=2, le=MOST.poses)]
     """Poses on the line, both ends included."""
 
 
@@ -123,7 +122,7 @@ class Waypoints(Strict):
     """Instead of rows: way-points whose poses lie on a straight line."""
     not_printed: Text | None = None
     """Why there are no rows, where the paper prints none; with `count`."""
-    count: Annotated[StrictInt, Field(ge=2, le=MOST_WAYPOINTS)] | None = None
+    count: Annotated[StrictInt, Field(ge=2, le=MOST.waypoints)] | None = None
     """How many way-points there are, where none is printed."""
 
     @model_validator(mode="after")
@@ -150,10 +149,10 @@ class Waypoints(Strict):
         count = len(self.points)
         if count < 2:
             raise fault(f".{name}", "contains only one way-point; give at least two")
-        if count > MOST_WAYPOINTS:
+        if count > MOST.waypoints:
             raise fault(
                 f".{name}",
-                f"holds {count:,} way-points, but at most {MOST_WAYPOINTS:,} are read; leave some "
+                f"holds {count:,} way-points, but at most {MOST.waypoints:,} are read; leave some "
                 "out",
             )
         self._check_labels()

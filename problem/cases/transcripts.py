@@ -34,19 +34,13 @@ WORDS = frozenset(
 
 @dataclass(frozen=True)
 class Difference:
-    """One place at which two transcriptions differ.
-
-    Attributes
-    ----------
-    field : str
-        Where, such as ``claims.total.value`` or ``waypoints[1][0]``.
-    first, second : str
-        What stands there in each; printed digits in quotes, `ABSENT` where there is nothing.
-    """
+    """One place at which two transcriptions differ."""
 
     field: str
+    """Where, such as ``claims.total.value`` or ``waypoints[1][0]``."""
     first: str
     second: str
+    """What stands there in each; printed digits in quotes, `ABSENT` where there is nothing."""
 
 
 def compare_transcriptions(first: Case, second: Case, words: bool = False) -> list[Difference]:

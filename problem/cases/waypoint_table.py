@@ -26,20 +26,14 @@ _TIME_HEADER = re.compile(r"(t|time)( *[\[(].*)?", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class WaypointTable:
-    """Way-points as a table prints them.
-
-    Attributes
-    ----------
-    rows : tuple of tuple of str
-        Digits, (way-point, joint).
-    counted : bool
-        Whether nothing but "1, 2, 3" names the joints, which might be angles.
-    """
+    """Way-points as a table prints them."""
 
     joints: tuple[str, ...]
     labels: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    """Digits, (way-point, joint)."""
     counted: bool
+    """Whether nothing but "1, 2, 3" names the joints, which might be angles."""
 
 
 def read_waypoint_table(faults: Faults, text: str) -> WaypointTable:

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..curves import Enclosed, Extremum, Trajectory, as_durations, furthest
+from ..curves import Enclosed, Extremum, Furthest, Trajectory, as_durations, furthest
 from ..errors import CurveError, SingularError
 from ..in_notebooks import InNotebooks
 from ..limits import QUANTITIES, half_range
 from ..problem import Problem
 from .jumps import Jump, jumps_of
-from .uneven_peaks import uneven_peaks
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
@@ -42,35 +41,24 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value of one quantity of one joint, compared with its limit.
-
-    Attributes
-    ----------
-    joint : str or None
-        Joint label; None for a segment duration.
-    quantity : str
-        "position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations "
-        "define none.
-    segment : int
-        Segment, from 0.
-    time : float or None
-        Time on the trajectory, s.
-    value, limit : float
-        In rad, s; the limit of a derivative as a size, that of the side with the larger ratio.
-    ratio : float
-        |value|/limit; above 1 the limit is exceeded. 0 if only the other side is limited.
-    error : float
-        Bound on the rounding error of ``value``.
-    """
+    """The largest value of one quantity of one joint, compared with its limit."""
 
     joint: str | None
+    """Joint label; None for a segment duration."""
     quantity: str
+    """"position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations "
+    "define none."""
     segment: int
+    """Segment, from 0."""
     time: float | None
+    """Time on the trajectory, s."""
     value: float
     limit: float
+    """In rad, s; the limit of a derivative as a size, that of the side with the larger ratio."""
     ratio: float
+    """|value|/limit; above 1 the limit is exceeded. 0 if only the other side is limited."""
     error: float
+    """Bound on the rounding error of ``value``."""
 
     @property
     def margin(self) -> float:
@@ -88,43 +76,31 @@ class Check(InNotebooks):
 
     Attributes
     ----------
-    limits : Verdict
-        The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
-        may be kept inside every piece although the motion jumps between pieces.
-    worst : Peak or None
-        Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
-    peaks : tuple of Peak
-        One per joint and quantity.
-    jumps : tuple of Jump
-        Discontinuities of position, velocity and acceleration.
-    total_time : float
-        Sum of the durations, s.
-    stretch : float
-        c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight.
     feasible_time, tight_time : float or None
         T·max(1, c*), the uniform repair; T·c*, the free rescaling. None if there is none; a reason
         is given.
-    tolerance : float
-        Relative excess that counts as kept.
     """
 
     verdict: Verdict
     limits: Verdict
+    """The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
+    may be kept inside every piece although the motion jumps between pieces."""
     worst: Peak | None
+    """Largest ratio; None if nothing is limited. A duration counts only beyond its bound."""
     peaks: tuple[Peak, ...]
+    """One per joint and quantity."""
     jumps: tuple[Jump, ...]
+    """Discontinuities of position, velocity and acceleration."""
     total_time: float
+    """Sum of the durations, s."""
     stretch: float
+    """c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight."""
     feasible_time: float | None
     feasible_why: str | None
     tight_time: float | None
     tight_why: str | None
     tolerance: float
-
-    @property
-    def continuous(self) -> bool:
-        """Whether position, velocity and acceleration agree on both sides of every break."""
-        return not self.jumps
+    """Relative excess that counts as kept."""
 
     @property
     def max_violation(self) -> float:
@@ -157,35 +133,61 @@ class Check(InNotebooks):
         return "\n".join(lines)
 
 
-def _ratio(value: float, limit: float, error: float) -> float:
-    if limit == 0.0:
-        return 0.0 if abs(value) <= error else np.inf
-    return abs(value) / limit
-
-
 def _derivative_peaks(
     problem: Problem,
     h: Array,
     trajectory: Trajectory,
     error: Array,
 ) -> list[Peak]:
-    def peak(top: Extremum, limit: float, ratio: float, bound: float) -> Peak:
-        at = problem.curve.segment_of(h, top)
-        label, quantity = problem.joints[top.joint], QUANTITIES[top.order - 1]
-        return Peak(label, quantity, at, top.time, top.value, limit, ratio, bound)
-
-    if problem.limits.uneven:
-        sided = uneven_peaks(problem.limits, trajectory, error)
-        return [peak(p.extremum, p.size, p.ratio, p.error) for p in sided]
-    limits, peaks = problem.limits.derivatives, []
-    wanted = np.isfinite(limits)
-    orders = np.flatnonzero(wanted.any(axis=0)).tolist()
+    """The deciding peak of each limited derivative, by joint, then by order."""
+    sides, peaks = problem.limits.sides, []
+    limited = np.isfinite(sides)
+    orders = np.flatnonzero(limited.any(axis=(0, 1))).tolist()
     reach = {r: furthest(trajectory, r + 1, error[:, r + 1]) for r in orders}
-    for j, r in np.argwhere(wanted).tolist():
-        top, bound = reach[r].largest(trajectory, j, error[:, r + 1])
-        limit = float(limits[j, r])
-        peaks.append(peak(top, limit, _ratio(top.value, limit, bound), bound))
+    for j, r in np.argwhere(limited.any(axis=0)).tolist():
+        top, size, ratio, bound = _nearest(
+            trajectory, reach[r], j, sides[:, j, r].tolist(), error[:, r + 1]
+        )
+        at = problem.curve.segment_of(h, top)
+        label, quantity = problem.joints[j], QUANTITIES[r]
+        peaks.append(Peak(label, quantity, at, top.time, top.value, size, ratio, bound))
     return peaks
+
+
+def _nearest(
+    trajectory: Trajectory, reach: Furthest, j: int, sizes: list[float], errors: Array
+) -> tuple[Extremum, float, float, float]:
+    """The extremum nearest to its limit or furthest beyond it, that limit, its ratio, an error.
+
+    No value on either side goes further beyond its limit than ratio + error/size: the true peak is
+    at least its own extremum less that one's error, and at most what `Furthest` says that none is
+    beyond. So a short segment, whose error is large but whose values are small, does not blur the
+    peak of another.
+    """
+    found = []
+    for side, size in enumerate(sizes):
+        if np.isfinite(size):
+            best, sign = reach.at(trajectory, side, j), (-1.0, 1.0)[side]
+            top, most = sign * best.value, sign * float(reach.outer[side, j])
+            ratio = _size_ratio(top, size, max(float(errors[best.segment, j]), most - top))
+            # What is not a number decides; of equal ones the first in time.
+            order = (np.inf if np.isnan(ratio) else ratio, top, -best.segment, -best.s)
+            found.append((order, best, size, top, most))
+    _, best, size, top, _ = max(found, key=lambda one: one[0])
+    outer = [
+        most if own == size else most / own * size
+        for *_, own, _, most in found
+        if own or own == size
+    ]
+    bound = max(float(errors[best.segment, j]), max(outer) - top)
+    return best, size, _size_ratio(top, size, bound), bound
+
+
+def _size_ratio(top: float, size: float, error: float) -> float:
+    """What lies on one side over its limit; what may be 0 keeps a limit of 0."""
+    if size == 0.0:
+        return 0.0 if top <= error else np.inf
+    return float(np.maximum(0.0, top)) / size
 
 
 def _position_peaks(
@@ -209,7 +211,7 @@ def _position_peaks(
             excess = sign * (top.value - limit)
             half = half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
-            ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
+            ratio = 1.0 + excess / half if half > 0 else _size_ratio(abs(excess), 0.0, bound)
             at = problem.curve.segment_of(h, top)
             peaks.append(
                 Peak(label, "position", at, top.time, top.value, float(limit), ratio, bound)

@@ -19,16 +19,11 @@ from .checker import TOLERANCE
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """True peak ratios of a batch of duration vectors.
-
-    Attributes
-    ----------
-    ratios : ndarray, shape (batch, joints, 3)
-        max over t of |v|/V, |a|/A, |j|/J, each by the limit on its side; 0 where there is no
-        limit, inf if a duration is not positive and finite.
-    """
+    """True peak ratios of a batch of duration vectors."""
 
     ratios: Array
+    """Shape (batch, joints, 3); max over t of |v|/V, |a|/A, |j|/J, each by the limit on its side; 0
+    where there is no limit, inf if a duration is not positive and finite."""
     _reach: Callable[[], Array] | None = field(default=None, repr=False)
 
     @property
@@ -140,22 +135,16 @@ def _within_positions(
 
 @dataclass(frozen=True, eq=False)
 class _PositionsAsked:
-    """The position limits of a problem beside what its curve knows of the way-points.
-
-    Attributes
-    ----------
-    values : ndarray
-        From `Curve.motion_values`.
-    wanted : ndarray of bool, shape (joints,)
-    room, half : ndarray, shape (joints, 2)
-        Way from the first way-point to the lower and the upper limit, and what an excess beyond
-        it is set beside.
-    """
+    """The position limits of a problem beside what its curve knows of the way-points."""
 
     values: Array
+    """From `Curve.motion_values`."""
     wanted: NDArray[np.bool_]
+    """Shape (joints,)."""
     room: Array
     half: Array
+    """Shape (joints, 2). Way from the first way-point to the lower and the upper limit, and what an
+    excess beyond it is set beside."""
 
 
 def _asked_of(problem: Problem, nodal: Array | None) -> _PositionsAsked | None:

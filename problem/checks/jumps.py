@@ -13,25 +13,17 @@ from ..problem import Problem
 
 @dataclass(frozen=True)
 class Jump:
-    """A derivative that differs on the two sides of a break.
-
-    Attributes
-    ----------
-    order : int
-        0 position, 1 velocity, 2 acceleration.
-    break_index : int
-        Break between two pieces of the trajectory, from 1.
-    time : float
-        s.
-    size : float
-        Value after the break minus the value before it, rad/sᵒʳᵈᵉʳ.
-    """
+    """A derivative that differs on the two sides of a break."""
 
     joint: str
     order: int
+    """0 position, 1 velocity, 2 acceleration."""
     break_index: int
+    """Break between two pieces of the trajectory, from 1."""
     time: float
+    """s."""
     size: float
+    """Value after the break minus the value before it, rad/sᵒʳᵈᵉʳ."""
 
 
 def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[list[Jump], bool]:

@@ -11,4 +11,10 @@ from .atomic import (
     try_writing_in as try_writing_in,
 )
 from .file_names import LONGEST_NAME as LONGEST_NAME, file_name as file_name
-from .textfile import parse_toml as parse_toml, read_hashed as read_hashed, read_text as read_text
+from .sizes import MOST as MOST
+from .textfile import (
+    decoded as decoded,
+    parse_toml as parse_toml,
+    read_hashed as read_hashed,
+    read_text as read_text,
+)

@@ -5,9 +5,8 @@ hash of the target's name, RANDOM cannot be guessed. The process that writes it 
 So a draft without a lock was left by a process that was killed, and the next one that writes the
 same target removes it; a draft with a lock says that somebody is writing that target now.
 
-A folder is replaced by exchanging it with its draft in one step where the system can (Linux).
-Elsewhere the old folder steps aside first, as ``.trajgap-TARGET-RANDOM.old``; when a process is
-killed just then, the next one that asks for the folder moves it back (`recover_folder`).
+An old folder steps aside for its draft, as ``.trajgap-TARGET-RANDOM.old``; when a process is killed
+just then, the next one that asks for the folder moves it back (`recover_folder`).
 """
 
 from __future__ import annotations
@@ -27,12 +26,8 @@ from ..errors import CaseError
 
 _PREFIX = ".trajgap-"
 """Start of the name of every draft; hidden, and told apart from files of others."""
-_CURRENT_FOLDER = -100
-"""AT_FDCWD of Linux: paths are relative to the current folder."""
-_EXCHANGE = 2
-"""RENAME_EXCHANGE of Linux's renameat2."""
 _NOT_OFFERED = (errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM)
-"""What systems and file systems answer that cannot exchange names, or make hard links."""
+"""What systems and file systems answer that cannot make hard links."""
 
 _drafts: set[Path] = set()
 """Drafts of this process, for `remove_drafts`."""
@@ -83,10 +78,7 @@ def read_regular(path: Path, largest: int, fix: str) -> bytes:
 
 
 def check_regular(path: Path) -> None:
-    """Refuse what is not a regular file, because reading it might never end.
-
-    A file that does not exist is not refused here.
-    """
+    """Refuse what is no regular file, because reading it might never end."""
     check_name(str(path))
     with suppress(OSError):
         _check_regular(str(path), path.stat())
@@ -209,10 +201,7 @@ def replace_folder(folder: Path, files: Mapping[str, str]) -> None:
             file = draft / name
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(content, encoding="utf-8", newline="\n")
-        if not _there(folder):
-            draft.rename(folder)
-        elif not _exchanged(draft, folder):
-            _step_aside(draft, folder)
+        _step_aside(draft, folder)
 
 
 def recover_folder(folder: Path) -> None:
@@ -363,31 +352,13 @@ def _publish(draft: Path, path: Path) -> None:
         draft.rename(path)
 
 
-def _exchanged(one: Path, other: Path) -> bool:
-    """Exchange the names of two folders in one step; False where the system does not offer it."""
-    if not sys.platform.startswith("linux"):
-        return False
-    import ctypes
-
-    try:
-        rename = ctypes.CDLL(None, use_errno=True).renameat2
-    except (OSError, AttributeError):
-        return False
-    names = os.fsencode(one), os.fsencode(other)
-    if rename(_CURRENT_FOLDER, names[0], _CURRENT_FOLDER, names[1], _EXCHANGE) == 0:
-        return True
-    number = ctypes.get_errno()
-    if number in _NOT_OFFERED:
-        return False
-    raise OSError(number, os.strerror(number), str(other))
-
-
 def _step_aside(draft: Path, folder: Path) -> None:
     """Put a draft in the place of a folder by two renames; `recover_folder` covers the gap."""
     old = folder.parent / f"{_stem(folder)}{uuid4().hex}.old"
     _stepping.add(folder)
     try:
-        folder.rename(old)
+        if _there(folder):
+            folder.rename(old)
         draft.rename(folder)
     finally:
         recover_folder(folder)

@@ -10,9 +10,7 @@ from typing import Any
 
 from ..errors import CaseError
 from .atomic import read_regular
-
-LARGEST_BYTES = 5_000_000
-"""Two hundred times the longest case file shipped: what is larger is not a case file."""
+from .sizes import MOST
 
 
 def read_text(path: Path) -> str:
@@ -44,17 +42,33 @@ def read_hashed(path: Path) -> tuple[str, str]:
         As `read_text`.
     """
     name = str(path)
-    data = read_regular(path, LARGEST_BYTES, "keep only the case itself")
-    if b"\0" in data:
-        raise CaseError(name, "", "is a binary file; a UTF-8 text file is needed")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise CaseError(name, f"line {line}", "is not UTF-8 text; save the file as UTF-8") from None
+    data = read_regular(path, MOST.case_bytes, "keep only the case itself")
+    text = decoded(data, name, "a UTF-8 text file is needed")
     if not text.strip():
         raise CaseError(name, "", "is empty; `trajgap new` writes a file to start from")
     return text.replace("\r\n", "\n").replace("\r", "\n"), sha256(data).hexdigest()
+
+
+def decoded(data: bytes, name: str, wanted: str) -> str:
+    """Text of a file without a byte order mark.
+
+    Parameters
+    ----------
+    wanted : str
+        What to give instead of a binary file, for the message.
+
+    Raises
+    ------
+    CaseError
+        If it is a binary file or not UTF-8.
+    """
+    if b"\0" in data:
+        raise CaseError(name, "", f"is a binary file; {wanted}")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise CaseError(name, f"line {line}", "is not UTF-8 text; save the file as UTF-8") from None
 
 
 def parse_toml(text: str, file: str) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
-from ..motions import BRAKING, read_yaml
+from ..motions import BRAKING, number_of, read_yaml
 from ..printed import spelt_like
 from .precedence import Range, StatedLimits
 
@@ -98,14 +98,5 @@ def _has(name: str, field: str, block: Mapping[Any, Any], key: str, otherwise: b
 
 def _number(name: str, field: str, block: Mapping[Any, Any], key: str) -> float | None:
     value = block.get(key)
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is not a number; fix it")
-    try:
-        found = float(value)
-    except OverflowError:
-        found = math.inf
-    if math.isnan(found):
-        raise CaseError(name, f"{field}.{key}", "is NaN; leave it out if there is no limit")
-    return found
+    # Numbers that are not finite are refused with the range, unless they say that there is none.
+    return None if value is None else number_of(value, name, f"{field}.{key}", finite=False)

@@ -20,24 +20,16 @@ _UNKNOWN = "is not a joint with limits there; rename it or add it;"
 
 @dataclass(frozen=True)
 class StatedLimits:
-    """The limits that one source states: ranges by joint and quantity.
-
-    Attributes
-    ----------
-    source : str
-        The file or flag, for every verdict.
-    ranges : mapping
-        Joint to quantity to (lower, upper), rad and s.
-    named : bool
-        Whether the joints are named by the source itself, so an unknown name is a fault.
-    slides : mapping
-        Whether a joint slides instead of turning, where the source says so.
-    """
+    """The limits that one source states: ranges by joint and quantity."""
 
     source: str
+    """The file or flag, for every verdict."""
     ranges: Mapping[str, Mapping[str, Range]]
+    """Joint to quantity to (lower, upper), rad and s."""
     named: bool = True
+    """Whether the joints are named by the source itself, so an unknown name is a fault."""
     slides: Mapping[str, bool] = field(default_factory=dict)
+    """Whether a joint slides instead of turning, where the source says so."""
 
     def __post_init__(self) -> None:
         for joint, quantities in self.ranges.items():

@@ -8,13 +8,12 @@ from pathlib import Path
 from xml.parsers import expat
 
 from ..errors import CaseError, TrajgapError
-from ..files import read_regular
+from ..files import MOST, read_regular
 from ..motions import BRAKING
 from ..printed import read_float
+from .moveit import read_moveit
 from .precedence import Range, StatedLimits
 
-LARGEST_URDF = 20_000_000
-"""Bytes: a hundred times the URDF of a humanoid."""
 _MOVING = ("revolute", "continuous", "prismatic")
 """Types of joints with one value that moves."""
 _SIZES = ("velocity", "acceleration", BRAKING, "jerk")
@@ -38,7 +37,7 @@ def read_urdf(path: Path) -> StatedLimits:
         If it is not a URDF, or declares entities.
     """
     name = str(path)
-    data = read_regular(path, LARGEST_URDF, "give the URDF alone, without meshes")
+    data = read_regular(path, MOST.robot_bytes, "give the URDF alone, without meshes")
     reader = _Reader(name)
     parser = expat.ParserCreate()
     parser.StartElementHandler = reader.begin
@@ -59,6 +58,11 @@ def read_urdf(path: Path) -> StatedLimits:
     if not reader.ranges:
         raise CaseError(name, "", "has no joint that moves and has limits; give the arm's URDF")
     return StatedLimits(name, reader.ranges, slides=reader.slides)
+
+
+def read_limits(path: Path) -> StatedLimits:
+    """Read a URDF (``.urdf``, ``.xml``), or MoveIt's joint_limits.yaml."""
+    return (read_urdf if path.suffix.lower() in (".urdf", ".xml") else read_moveit)(path)
 
 
 class _Reader:

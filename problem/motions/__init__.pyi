@@ -18,8 +18,8 @@ from .judged import (
     MotionPeak as MotionPeak,
     check_motion as check_motion,
 )
-from .motion import MOST_VALUES as MOST_VALUES, Motion as Motion, numbered as numbered
-from .plain_data import read_yaml as read_yaml
+from .motion import Motion as Motion, numbered as numbered
+from .plain_data import number_of as number_of, read_yaml as read_yaml
 from .reading import (
     UNITS as UNITS,
     ForeignFile as ForeignFile,

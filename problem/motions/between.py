@@ -29,11 +29,6 @@ from .judged import (
 )
 from .samples import Samples
 
-_EXACTLY = "The numbers count as exact; state --noise for measured ones."
-"""Said where nothing is known of noise: a last digit accuses nobody."""
-_STRIDES = 12
-"""Doublings of the stride: at 4,096 samples noise is as small as any limit can ask for."""
-
 
 def check_samples(
     samples: Samples, limits: JointLimits, tolerance: float = MOTION_TOLERANCE
@@ -94,7 +89,10 @@ def check_samples(
         + (f"; slower by {stretch:.6g} is not enough" if stretch > 1 else ""),
         floor=None,
         floor_why="samples alone do not show where the motion stands still",
-        concluded=(concluded, samples.assumed or _EXACTLY),
+        concluded=(
+            concluded,
+            samples.assumed or "The numbers count as exact; state --noise for measured ones.",
+        ),
         open=(
             *noise,
             "Nothing can be checked between the samples; state an --interpolation for a verdict "
@@ -143,7 +141,8 @@ def _proven(samples: Samples, r: int, ranges: list[tuple[float, float]]) -> list
         if not rows.all():
             times, values = times[rows], values[rows]
         open_joints = limited
-        for stride in (1 << n for n in range(_STRIDES)):
+        # At 4,096 samples noise is as small as any limit can ask for.
+        for stride in (1 << n for n in range(12)):
             if differences * stride >= times.size or not open_joints.size:
                 break
             some = values if open_joints.size == len(ranges) else values[:, open_joints]
@@ -183,25 +182,12 @@ def _peaks(
     ):
         source = limits.source(limits.joints[j], BRAKING)
     half = half_range(lower, upper, lower if np.isfinite(lower) else upper) if r == 0 else None
-    # Towards a lower limit what is surely reached lies above the value, by its error.
-    return [
-        replace(
-            peak(
-                limits,
-                j,
-                quantity,
-                time,
-                (value, value - error, value + error)
-                if side
-                else (value, value + error, value - error),
-                limit,
-                side,
-                half,
-            ),
-            source=source,
-        )
-        for side, (limit, (value, error, time)) in enumerate(
-            zip((lower, upper), proven, strict=False)
-        )
-        if np.isfinite(limit)
-    ]
+    peaks = []
+    for side, (limit, (value, error, time)) in enumerate(zip(held, proven, strict=False)):
+        if np.isfinite(limit):
+            # Towards a lower limit what is surely reached lies above the value, by its error.
+            away = error if side else -error
+            values = (value, value - away, value + away)
+            one = peak(limits, j, quantity, time, values, limit, side, half)
+            peaks.append(replace(one, source=source))
+    return peaks

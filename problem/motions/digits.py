@@ -12,31 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 
-_LINES = 2000
-"""Lines of a text whose digits are looked at, spread evenly: some hundredths of a second for a
-dozen columns. A place that stands in no such line can only make the rounding larger."""
 _ALL = 17
 """Significant digits that determine a float64: what shows as many was not rounded any further."""
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eE]([+-]?\d{1,4}))?")
 """Digits before and after the point, and the power of ten."""
-_ROUNDED_UP = 1.0 + 2.0**-50
-"""Covers the rounding of a power of ten."""
 
 
 @dataclass(frozen=True, eq=False)
 class HalfUnits:
-    """Uncertainty of the numbers in a file from rounding when they were written.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    values : ndarray, shape (3, joints) or broadcast to it
-        Uncertainty of positions, velocities and accelerations, rad, s.
-    """
+    """Uncertainty of the numbers in a file from rounding when they were written."""
 
     time: float = 0.0
+    """s."""
     values: ArrayLike = 0.0
+    """Shape (3, joints) or broadcast to it. Uncertainty of positions, velocities and accelerations,
+    rad, s."""
 
     def of(self, order: int, joints: int) -> Array:
         """Digits of derivative ``order`` of every joint, shape (joints,)."""
@@ -48,27 +38,30 @@ Digits = NDArray[np.int64]
 """Most decimal places, and most significant digits, of each column: shape (columns, 2)."""
 
 
-def digits_of_text(text: str, separator: str | None, columns: int) -> Digits:
+def digits_of_text(text: str, separator: str | None, columns: int, lines: int = 2000) -> Digits:
     """Digits of the columns of a table as they stand; cells without a number show none.
 
     Parameters
     ----------
     separator : str or None
         Between cells; None for blanks.
+    lines : int
+        Lines that are looked at, spread evenly: some hundredths of a second for a dozen columns. A
+        place that stands in none of them can only make the rounding larger.
     """
-    rows = (line.partition("#")[0].split(separator) for line in _spread(text))
+    rows = (line.partition("#")[0].split(separator) for line in _spread(text, lines))
     return _most((row for row in rows if len(row) == columns), columns)
 
 
-def digits_of_values(values: Array) -> Digits:
+def digits_of_values(values: Array, lines: int = 2000) -> Digits:
     """Digits of each column of numbers in their shortest form, which ends no number in 0."""
-    step = max(1, len(values) // _LINES)
+    step = max(1, len(values) // lines)
     return _most((map(repr, row) for row in values[::step].tolist()), values.shape[1])
 
 
-def _spread(text: str) -> Iterator[str]:
+def _spread(text: str, lines: int) -> Iterator[str]:
     before = -1
-    for start in range(0, len(text), max(1, len(text) // _LINES)):
+    for start in range(0, len(text), max(1, len(text) // lines)):
         first = text.rfind("\n", 0, start) + 1
         if first != before:
             before = first
@@ -133,4 +126,5 @@ def _half_unit(places: int, significant: int, largest: float) -> float:
     last = -places
     if significant and 0.0 < largest < math.inf:
         last = max(last, math.floor(math.log10(largest)) - significant + 1)
-    return 0.5 * 10.0 ** min(max(last, -320), 300) * _ROUNDED_UP
+    # A power of ten is rounded too, by less than this.
+    return 0.5 * 10.0 ** min(max(last, -320), 300) * (1.0 + 2.0**-50)

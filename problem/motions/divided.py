@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from .motion import EPS
+from .motion import EPS, ROUNDED_UP
 from .samples import Samples
 
 _TOGETHER = 1 << 14
 """Windows that are looked at together: a dozen arrays of that length stay in a core's own cache."""
-_SUMS_UP = 1.0 + 16 * EPS
-"""Covers the rounding of a bound's own sums and quotients."""
 
 
 def divided_extremes(
@@ -144,6 +142,6 @@ def _differences(values: list[Array], spans: list[list[Span]], noise: float) -> 
         for m, (span, off, least) in enumerate(spans_here):
             one = (found[m + 1] - found[m]) / span
             differences.append(one)
-            bounds.append(_SUMS_UP * (errors[m] + errors[m + 1] + np.abs(one) * off) / least)
+            bounds.append(ROUNDED_UP * (errors[m] + errors[m + 1] + np.abs(one) * off) / least)
         found, errors = differences, bounds
-    return factorial * found[0], _SUMS_UP * factorial * errors[0]
+    return factorial * found[0], ROUNDED_UP * factorial * errors[0]

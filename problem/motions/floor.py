@@ -12,30 +12,19 @@ from ..arrays import Array
 from .joint_limits import JointLimits
 from .motion import Motion
 
-_SAFE = 1.0 - 1e-12
-"""Factor on a floor, far below the rounding of its closed form."""
-
 
 @dataclass(frozen=True)
 class Floor:
-    """The shortest time between the standstills of a motion, over every curve.
-
-    Attributes
-    ----------
-    time : float
-        s; proven: no motion within the limits that stands still at the same places is shorter.
-    stops : int
-        Standstills of all joints, start and end included.
-    waiting : float
-        Time that the motion stands still, s; the floor does not include it.
-    above : float
-        (T − time)/time of the judged motion.
-    """
+    """The shortest time between the standstills of a motion, over every curve."""
 
     time: float
+    """s; proven: no motion within the limits that stands still at the same places is shorter."""
     stops: int
+    """Standstills of all joints, start and end included."""
     waiting: float
+    """Time that the motion stands still, s; the floor does not include it."""
     above: float
+    """(T − time)/time of the judged motion."""
 
     def __str__(self) -> str:
         return (
@@ -137,7 +126,7 @@ def least_time(
         total += max(each)
         if not motion.scaled[a:b, 1:].any():
             waiting += float(motion.breaks[b] - motion.breaks[a])
-    total *= _SAFE
+    total *= 1.0 - 1e-12  # more than the closed form is rounded by
     if not 0.0 < total < math.inf:
         return None, "nothing moves between the standstills" if total == 0.0 else (
             "a joint that must stand still moves"

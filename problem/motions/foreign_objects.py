@@ -15,10 +15,6 @@ from .motion import Motion
 from .ros import plain_message, samples_of_message, trajectories
 from .samples import Interpolation
 
-_ON_GRID = 1e-9
-"""Share of a grid cell within which a knot of the path is the grid point: far above rounding, and
-its cube, by which the motion is off there, far below."""
-
 
 def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
     """The exact motion of an object of scipy, TOPPRA, Ruckig, Drake or ROS, or of a `Trajectory`.
@@ -112,8 +108,9 @@ def _toppra_steps(given: Any, joints: Sequence[str]) -> Motion:
             continue
         push = (speeds[k + 1] ** 2 - speeds[k] ** 2) / (2 * length)
         cuts = [0.0]
-        # A knot that differs from a grid point by rounding, as 1/3 does, is that grid point.
-        near = _ON_GRID * length
+        # A knot that differs from a grid point by rounding, as 1/3 does, is that grid point: 1e-9
+        # is far above rounding, and its cube, by which the motion is off there, far below.
+        near = 1e-9 * length
         for knot in path.x[(path.x > grid[k] + near) & (path.x < grid[k + 1] - near)]:
             way = knot - grid[k]
             root = np.sqrt(max(0.0, speeds[k] ** 2 + 2 * push * way))
@@ -162,11 +159,9 @@ def _ruckig(given: Any, joints: Sequence[str]) -> Motion:
         cuts.add(float(end))
     times = np.array(sorted(cuts))
     # Steps of rounding's length would be pieces of no meaning.
-    keep = np.append(True, np.diff(times) > 1e-12 * max(1.0, times[-1]))
-    keep[-1] = True
-    times = times[keep]
-    if times.size > 2 and times[-1] - times[-2] <= 1e-12 * max(1.0, times[-1]):
-        times = np.delete(times, -2)
+    short = 1e-12 * max(1.0, times[-1])
+    inner = times[:-1][np.append(True, np.diff(times[:-1]) > short)]
+    times = np.append(inner[(inner == 0.0) | (times[-1] - inner > short)], times[-1])
     rows = []
     for begin, end in pairwise(times.tolist()):
         middle = 0.5 * (begin + end)

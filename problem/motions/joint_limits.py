@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
+from ..characters import listed
 from ..errors import TrajgapError
 from ..limits import QUANTITIES, Limits
 from .motion import LARGEST
@@ -25,16 +26,6 @@ GIVEN = "given"
 class JointLimits:
     """Ranges of position, velocity, acceleration and jerk of every joint.
 
-    Attributes
-    ----------
-    lower, upper : ndarray, shape (joints, 4)
-        Range of derivative 0 to 3, rad, s; infinite if there is none.
-    deceleration : ndarray, shape (joints,)
-        Largest |acceleration| while the joint's speed falls, rad/s²; if it is given, the
-        acceleration limit applies only while the speed grows. inf if it is not given.
-    sources : mapping
-        (joint, quantity) to the source of the limit, or of the statement that there is none.
-
     Raises
     ------
     TrajgapError
@@ -45,8 +36,12 @@ class JointLimits:
     joints: tuple[str, ...]
     lower: Array
     upper: Array
+    """Shape (joints, 4). Range of derivative 0 to 3, rad, s; infinite if there is none."""
     deceleration: Array
+    """Shape (joints,). Largest |acceleration| while the joint's speed falls, rad/s²; if it is
+    given, the acceleration limit applies only while the speed grows. inf if it is not given."""
     sources: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    """(joint, quantity) to the source of the limit, or of the statement that there is none."""
 
     def __post_init__(self) -> None:
         for j, joint in enumerate(self.joints):
@@ -108,25 +103,9 @@ class JointLimits:
 
     @property
     def symmetric(self) -> Limits:
-        """Limits of the same size to both sides that imply these: for `Problem` and `solve`.
-
-        The smaller side counts, and of acceleration and deceleration the smaller one.
-
-        Raises
-        ------
-        TrajgapError
-            If a quantity has limits, and one of the joints states none.
-        """
-        self._check_alike()
-        sizes = np.minimum(-self.lower[:, 1:], self.upper[:, 1:])
-        sizes[:, 1] = np.minimum(sizes[:, 1], self.deceleration)
-        return Limits(
-            np.abs(sizes[:, 0]),
-            np.abs(sizes[:, 1]),
-            np.abs(sizes[:, 2]),
-            position_lower=self.lower[:, 0],
-            position_upper=self.upper[:, 0],
-        )
+        """`two_sided` with the smaller size on both sides, which implies these limits."""
+        limits = self.two_sided
+        return limits.with_derivatives(limits.sides.min(axis=0))
 
     @property
     def two_sided(self) -> Limits:
@@ -138,9 +117,16 @@ class JointLimits:
         Raises
         ------
         TrajgapError
-            If a quantity has limits, and one of the joints states none.
+            If a quantity has limits, and one of the joints states none; it would be free unnoticed.
         """
-        self._check_alike()
+        unstated = self.unstated
+        for joint, quantity in unstated:
+            lacking = sum(quantity == other for _, other in unstated)
+            if quantity != ORDERS[0] and lacking < len(self.joints):
+                raise TrajgapError(
+                    f"{quantity} of joint {joint}: no limit is stated, but other joints have one; "
+                    "state it, or inf for none"
+                )
         sides = np.stack([-self.lower[:, 1:], self.upper[:, 1:]])
         braking = np.isfinite(self.deceleration)
         least = np.minimum(sides[:, :, 1].min(axis=0), self.deceleration)
@@ -151,17 +137,6 @@ class JointLimits:
     def source(self, joint: str, quantity: str) -> str:
         """Where a limit is stated, in words."""
         return self.sources.get((joint, quantity), GIVEN)
-
-    def _check_alike(self) -> None:
-        """Refuse a joint that would be free in a problem because nobody states its limit."""
-        unstated = self.unstated
-        for joint, quantity in unstated:
-            lacking = sum(quantity == other for _, other in unstated)
-            if quantity != ORDERS[0] and lacking < len(self.joints):
-                raise TrajgapError(
-                    f"{quantity} of joint {joint}: no limit is stated, but other joints have one; "
-                    "state it, or inf for none"
-                )
 
 
 def unstated_words(unstated: Sequence[tuple[str, str]], joints: Sequence[str]) -> str:
@@ -177,16 +152,12 @@ def unstated_words(unstated: Sequence[tuple[str, str]], joints: Sequence[str]) -
     parts = [_joints_in_words(free)] if free else []
     for of, quantities in sorted(by_joints.items(), key=lambda one: len(one[0]), reverse=True):
         whole = "" if len(of) == len(others) else f" of {_joints_in_words(of)}"
-        parts.append(_listed(quantities) + whole)
+        parts.append(listed(quantities) + whole)
     return f"{'; '.join(parts)}, no limit stated" if parts else ""
 
 
 def _joints_in_words(names: Sequence[str]) -> str:
-    return f"joint{'s' * (len(names) > 1)} {_listed(names)}"
-
-
-def _listed(words: Sequence[str]) -> str:
-    return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
+    return f"joint{'s' * (len(names) > 1)} {listed(names)}"
 
 
 def check_range(low: float, high: float, quantity: str, joint: str) -> None:

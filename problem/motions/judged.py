@@ -20,110 +20,75 @@ from .one_sided import one_sided_extreme
 
 MOTION_TOLERANCE = 1e-6
 """Relative excess over a limit that still counts as keeping it: files carry printed digits."""
-_STANDING = 1e-9
-"""Share of a joint's largest speed below which it stands: rounding of planners is below it."""
-_JUMP = 1e-9
-"""Relative to the terms of a derivative: what differs less at a break is rounding."""
-_HORNER = 32 * 2.0**-52
-"""Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
-_BLURRED = "Rounding may change the result by as much as the distance to a limit."
-"""Why a motion is not decided whose numbers are taken exactly."""
+_ROUNDING = 1e-9
+"""What planners round by at most: a share of a joint's largest speed below which it stands, and of
+the terms of a derivative that differ at a break."""
 
 
 @dataclass(frozen=True)
 class MotionPeak:
-    """The value of one quantity of one joint nearest to its limit, or furthest beyond.
-
-    Attributes
-    ----------
-    joint, quantity : str
-        The quantity is "position", "velocity", "acceleration", "deceleration" or "jerk".
-    time : float
-        s.
-    value, limit : float
-        rad, s; signed.
-    ratio : float
-        value/limit; of a position 1 + excess over half of the range. Above 1 it is exceeded.
-    least_ratio, most_ratio : float
-        Bounds of the ratio, all errors included.
-    source : str
-        Where the limit is stated.
-    """
+    """The value of one quantity of one joint nearest to its limit, or furthest beyond."""
 
     joint: str
     quantity: str
+    """The quantity is "position", "velocity", "acceleration", "deceleration" or "jerk"."""
     time: float
+    """s."""
     value: float
     limit: float
+    """rad, s; signed."""
     ratio: float
+    """value/limit; of a position 1 + excess over half of the range. Above 1 it is exceeded."""
     least_ratio: float
     most_ratio: float
+    """Bounds of the ratio, all errors included."""
     source: str
+    """Where the limit is stated."""
 
 
 @dataclass(frozen=True)
 class MotionJump:
-    """The largest jump of one derivative of one joint, and how many there are.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    size : float
-        rad/sᵒʳᵈᵉʳ; value after minus value before.
-    count : int
-        Number of breaks at which it jumps.
-    """
+    """The largest jump of one derivative of one joint, and how many there are."""
 
     joint: str
     quantity: str
     time: float
+    """s."""
     size: float
+    """rad/sᵒʳᵈᵉʳ; value after minus value before."""
     count: int
+    """Number of breaks at which it jumps."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionCheck:
-    """The result of a check of a motion, or of all motions through samples.
-
-    Attributes
-    ----------
-    limits : Verdict
-        Verdict on the limits alone, apart from jumps.
-    worst : MotionPeak or None
-        Largest ratio; None if nothing is limited.
-    peaks : tuple of MotionPeak
-        One for each limited quantity of each joint.
-    total_time : float
-        s.
-    stretch : float
-        Uniform slow-down that repairs the motion: all durations times this factor keep the limits;
-        at least 1. For samples: no smaller factor can repair any motion through them.
-    feasible_time : float or None
-        ``total_time`` times ``stretch``; None if there is none, with a reason.
-    floor : Floor or None
-        No motion between the same standstills is shorter.
-    concluded, open : tuple of str
-        Conclusions from the file, and what remains open.
-    not_judged : tuple of (str, str)
-        Joint and quantity wherever no limit is stated: the verdict does not cover them.
-    """
+    """The result of a check of a motion, or of all motions through samples."""
 
     verdict: Verdict
     limits: Verdict
+    """Verdict on the limits alone, apart from jumps."""
     worst: MotionPeak | None
+    """Largest ratio; None if nothing is limited."""
     peaks: tuple[MotionPeak, ...]
+    """One for each limited quantity of each joint."""
     jumps: tuple[MotionJump, ...]
     total_time: float
+    """s."""
     stretch: float
+    """Uniform slow-down that repairs the motion: all durations times this factor keep the limits;
+    at least 1. For samples: no smaller factor can repair any motion through them."""
     feasible_time: float | None
+    """``total_time`` times ``stretch``; None if there is none, with a reason."""
     feasible_why: str | None
     floor: Floor | None
+    """No motion between the same standstills is shorter."""
     floor_why: str | None
     concluded: tuple[str, ...]
     open: tuple[str, ...]
+    """Conclusions from the file, and what remains open."""
     tolerance: float
     not_judged: tuple[tuple[str, str], ...]
+    """Joint and quantity wherever no limit is stated: the verdict does not cover them."""
     joints: tuple[str, ...]
 
     def __str__(self) -> str:
@@ -195,7 +160,8 @@ def check_motion(
         if may_jump and not jumping:
             joint, quantity = may_jump[0]
             undecided.append(f"The {quantity} of joint {joint} may jump by less than the noise.")
-        undecided.append(motion.advice or _BLURRED)
+        exact = "Rounding may change the result by as much as the distance to a limit."
+        undecided.append(motion.advice or exact)
     return MotionCheck(
         verdict=verdict,
         limits=about_limits,
@@ -288,9 +254,10 @@ def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...],
     """Peaks of all joints, and the speed below which each stands."""
     pieces, powers, _ = motion.scaled.shape
     trajectory = Trajectory(motion.durations, motion.scaled, (powers - 1,) * pieces)
-    errors = motion.error + _HORNER * derivative_terms(motion.scaled, motion.durations)
+    # Horner's rounding of ten coefficients is 20 · 2⁻⁵³ of a polynomial's absolute terms.
+    errors = motion.error + 32 * EPS * derivative_terms(motion.scaled, motion.durations)
     reach = [furthest(trajectory, r, errors[:, r]) for r in range(4)]
-    standing = _STANDING * np.abs(reach[1].values).max(axis=0)
+    standing = _ROUNDING * np.abs(reach[1].values).max(axis=0)
     peaks: list[MotionPeak] = []
     for j in range(len(motion.joints)):
         for r in range(4):
@@ -411,7 +378,7 @@ def _jumps(motion: Motion) -> tuple[tuple[MotionJump, ...], list[tuple[str, str]
         start, end = motion.at_ends(r)
         shown = (motion.durations**-r)[:, None]
         # A jump that the digits of the positions explain is none.
-        digits = _JUMP * terms[:, r] + 64 * EPS * whole * shown
+        digits = _ROUNDING * terms[:, r] + 64 * EPS * whole * shown
         size = start[1:] - end[:-1]
         noise = motion.error[1:, r] + motion.error[:-1, r]
         jumps = np.abs(size) > digits[1:] + digits[:-1] + noise

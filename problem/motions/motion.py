@@ -13,42 +13,24 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..curves import MAX_COEFFICIENTS, PERM
 from ..errors import TrajgapError
-from ..printed import MOST_JOINTS
+from ..files import MOST
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-MOST_VALUES = 10_000_000
-"""Samples times joints of one motion: 10⁵ samples of 100 joints, about half a gigabyte at work."""
 LARGEST = 1e100
 """Size of a position, derivative, coefficient or limit, rad and s; a limit above 0 is at least its
 inverse. Divided by the cube of the shortest step, 1e-30 s, and by a limit, it is still within
 float64, which would overflow to inf and NaN."""
 EPS = 2.0**-52
 """Spacing of float64 at 1."""
+ROUNDED_UP = 1.0 + 2.0**12 * EPS
+"""Covers the rounding of a bound's own sums, products and powers."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
     """Joint values over time, from any source.
-
-    Attributes
-    ----------
-    breaks : ndarray, shape (pieces + 1,)
-        Times at which the pieces meet, s, ascending.
-    scaled : ndarray, shape (pieces, powers, joints)
-        Ascending coefficients in s = (t − t_k)/h_k, rad (m for sliding joints).
-    error : ndarray, shape (pieces, 4, joints)
-        Bound on the error of derivatives 0 to 3 anywhere on a piece, rad/sᵒʳᵈᵉʳ, apart from
-        rounding errors of the evaluation; inf if nothing is known.
-    between : str
-        The assumption about the motion between the points of the file, in words.
-    smooth : int
-        Derivatives up to this one are continuous by construction; −1 if none is known to be.
-    assumed : str
-        Uncertainty of the numbers in the file, in words; empty if they are exact.
-    advice : str
-        Advice if this leaves the verdict open.
 
     Raises
     ------
@@ -59,12 +41,21 @@ class Motion:
 
     joints: tuple[str, ...]
     breaks: Array
+    """Shape (pieces + 1,). Times at which the pieces meet, s, ascending."""
     scaled: Array
+    """Shape (pieces, powers, joints). Ascending coefficients in s = (t − t_k)/h_k, rad (m for
+    sliding joints)."""
     error: Array
+    """Shape (pieces, 4, joints). Bound on the error of derivatives 0 to 3 anywhere on a piece,
+    rad/sᵒʳᵈᵉʳ, apart from rounding errors of the evaluation; inf if nothing is known."""
     between: str
+    """The assumption about the motion between the points of the file, in words."""
     smooth: int = -1
+    """Derivatives up to this one are continuous by construction; −1 if none is known to be."""
     assumed: str = ""
+    """Uncertainty of the numbers in the file, in words; empty if they are exact."""
     advice: str = ""
+    """Advice if this leaves the verdict open."""
 
     def __post_init__(self) -> None:
         pieces, powers, joints = self.scaled.shape
@@ -214,8 +205,8 @@ def clock_error(times: Array) -> Array:
 
 def check_joints(labels: Sequence[str], count: int) -> None:
     """Refuse labels that do not fit their joints, and more joints than any arm has."""
-    if not 1 <= count <= MOST_JOINTS:
-        raise TrajgapError(f"joints: {count} of them; give 1 to {MOST_JOINTS}")
+    if not 1 <= count <= MOST.joints:
+        raise TrajgapError(f"joints: {count} of them; give 1 to {MOST.joints}")
     if len(labels) != count:
         raise TrajgapError(f"joints: {len(labels)} names for {count} joints; give one each")
     if len(set(labels)) < count:

@@ -9,35 +9,23 @@ import numpy as np
 from ..arrays import Array
 from ..curves import Trajectory, bernstein, derived, roots_in_unit, valued
 
-_PART = 4096
-"""Pieces looked at together, those that may reach furthest first; most motions need one part."""
-_HALVINGS = 50
-"""Of the way on which a speed leaves its error: to 2⁻⁵⁰ of it."""
-
 
 @dataclass(frozen=True)
 class OneSided:
-    """The largest |acceleration| of a joint on one side.
-
-    Attributes
-    ----------
-    s, value : float
-        Where on the piece, and what stands there, signed.
-    sure : float
-        Size that some instant surely reaches, errors included.
-    most : float
-        Size that none is above.
-    """
+    """The largest |acceleration| of a joint on one side."""
 
     piece: int
     s: float
     value: float
+    """Where on the piece, and what stands there, signed."""
     sure: float
+    """Size that some instant surely reaches, errors included."""
     most: float
+    """Size that none is above."""
 
 
 def one_sided_extreme(
-    trajectory: Trajectory, errors: Array, joint: int, sign: float, rest: float
+    trajectory: Trajectory, errors: Array, joint: int, sign: float, rest: float, part: int = 4096
 ) -> OneSided:
     """Largest |acceleration| of a joint while its speed grows (``sign`` 1) or falls (−1).
 
@@ -52,28 +40,30 @@ def one_sided_extreme(
         Bound on what each derivative is off by, its rounding included.
     rest : float
         rad/s.
+    part : int
+        Pieces looked at together, those that may reach furthest first; most motions need one part.
     """
     v, a = (trajectory.derivatives(r)[:, :, joint] for r in (1, 2))
     blur, err = errors[:, 1, joint], errors[:, 2, joint]
     size = np.abs(bernstein(a)).max(axis=0)
     order = np.argsort(-(size + err), kind="stable")
     found = OneSided(0, 0.0, 0.0, 0.0, 0.0)
-    for start in range(0, order.size, _PART):
-        k = order[start : start + _PART]
+    for start in range(0, order.size, part):
+        k = order[start : start + part]
         best = abs(found.value)
         if (size + err)[k[0]] <= best and (size - err)[order[start:]].max() <= found.sure:
             break
-        part = _part(v[:, k], a[:, k], blur[k], err[k], sign, rest)
+        here = _part(v[:, k], a[:, k], blur[k], err[k], sign, rest)
         # An acceleration below its own error may have either sign.
         unsure = float(np.minimum(2.0 * err[k], size[k] + err[k]).max())
-        place = found if abs(part.value) <= best else part
-        piece = found.piece if place is found else int(k[part.piece])
+        place = found if abs(here.value) <= best else here
+        piece = found.piece if place is found else int(k[here.piece])
         found = OneSided(
             piece=piece,
             s=place.s,
             value=place.value,
-            sure=max(found.sure, part.sure),
-            most=max(found.most, part.most, unsure),
+            sure=max(found.sure, here.sure),
+            most=max(found.most, here.most, unsure),
         )
     return found
 
@@ -119,7 +109,7 @@ def _near(v: Array, start: Array, end: Array, least: Array) -> Array:
     if crossing.any():
         lane = np.nonzero(crossing)[1]
         low, high, a, floor = start[crossing], end[crossing], v[:, lane], least[lane]
-        for _ in range(_HALVINGS):
+        for _ in range(50):
             middle = 0.5 * (low + high)
             beyond = np.abs(valued(a, middle)) > floor
             low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)

@@ -11,16 +11,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError
-from ..files import check_regular, read_regular
+from ..files import MOST, check_regular, read_regular
 from .samples import Samples
-from .tables import LARGEST_FILE, check_size, column_meaning, samples_of_columns
+from .tables import check_size, column_meaning, samples_of_columns
 
 _A_SECOND = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}
 """How many units of Arrow's types of time a second has."""
-_A_DAY = 86_400
-"""Seconds of a day: the unit of dates."""
-_NO_UNIT = ("t", "time", "times", "timestamp")
-"""Names of the column of times that say no unit, lower case; the others say seconds."""
 
 
 def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
@@ -45,7 +41,7 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
         raise CaseError(
             name, "", "Parquet needs pyarrow; pip install trajgap[parquet], or export CSV"
         ) from None
-    data = read_regular(path, LARGEST_FILE, "split it, or keep fewer rows")
+    data = read_regular(path, MOST.table_bytes, "split it, or keep fewer rows")
     try:
         file = parquet.ParquetFile(io.BytesIO(data))
         names, rows = list(file.schema_arrow.names), file.metadata.num_rows
@@ -103,14 +99,15 @@ def _times(name: str, label: str, column: Any) -> tuple[Array, float]:
             column = column.cast(width)
         whole = np.asarray(column.cast(int64()).to_numpy(), dtype=np.int64)
         if types.is_date32(kind):
-            whole = whole * _A_DAY
+            whole = whole * 86_400
         second = 1 if types.is_date32(kind) else _A_SECOND[getattr(kind, "unit", "ms")]
         start = 0 if types.is_duration(kind) else int(whole[0])
         if max(abs(int(whole.max()) - start), abs(int(whole.min()) - start)) >= 2**63:
             raise CaseError(name, label, "spans more time than can be read; give seconds")
         return np.asarray((whole - start) / second, dtype=np.float64), 0.5 / second
     whole_numbers = types.is_integer(kind) or (types.is_decimal(kind) and kind.scale <= 0)
-    if whole_numbers and label.strip().lower() in _NO_UNIT:
+    # Other names of the column of times say seconds.
+    if whole_numbers and label.strip().lower() in ("t", "time", "times", "timestamp"):
         raise CaseError(
             name, label, f"holds {kind} without a unit; name it time_s if these are seconds"
         )

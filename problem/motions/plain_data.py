@@ -9,20 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
-from ..files import read_regular
-
-LARGEST_TEXT = 300_000_000
-"""Bytes of a JSON file: ten million positions with derivatives."""
-LARGEST_YAML = 20_000_000
-"""Bytes of a YAML file: reading one takes ten times as long as JSON, here up to a minute."""
-_DEEPEST = 40
-"""Levels of nesting: a message of ROS has six."""
+from ..files import MOST, decoded, read_regular
 
 
 def read_json(path: Path) -> Any:
     """Read a JSON file of finite numbers."""
     name = str(path)
-    return parse_json(read_regular(path, LARGEST_TEXT, "keep fewer samples"), name)
+    return parse_json(read_regular(path, MOST.json_bytes, "keep fewer samples"), name)
 
 
 def parse_json(data: bytes, name: str) -> Any:
@@ -37,18 +30,36 @@ def parse_json(data: bytes, name: str) -> Any:
             raise _twice(name, "", [key for key, _ in pairs])
         return found
 
+    text = decoded(data, name, "give JSON text")
     try:
-        return json.loads(data.decode("utf-8-sig"), parse_constant=refuse, object_pairs_hook=once)
+        return json.loads(text, parse_constant=refuse, object_pairs_hook=once)
     except CaseError:
         raise
-    except UnicodeDecodeError:
-        raise CaseError(name, "", "is not UTF-8 text; save the file as UTF-8") from None
     except json.JSONDecodeError as error:
         raise CaseError(
             name, f"line {error.lineno}", f"not valid JSON, {error.msg}; correct the syntax"
         ) from None
     except (RecursionError, ValueError):
         raise CaseError(name, "", "is nested too deeply, or has a number too long") from None
+
+
+def number_of(value: Any, name: str, field: str, finite: bool = True) -> float:
+    """A number of plain data as float64, or a refusal that names its file and its field."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise CaseError(name, field, f"{str(value)[:40]!r} is not a number; fix it")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if finite and not math.isfinite(found):
+        raise CaseError(name, field, "is not finite; give a number")
+    return found
+
+
+def check_names(value: Any, name: str, field: str) -> None:
+    """Refuse what is no list of names."""
+    if not isinstance(value, list | tuple) or not all(isinstance(x, str) and x for x in value):
+        raise CaseError(name, field, "is not a list of names; give one name per joint")
 
 
 def read_yaml(path: Path) -> list[Any]:
@@ -58,11 +69,8 @@ def read_yaml(path: Path) -> list[Any]:
     ``1:30`` (to base 60), ``1.0e+400`` (infinite); and keys that occur twice.
     """
     name = str(path)
-    data = read_regular(path, LARGEST_YAML, "give JSON, or keep fewer samples")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise CaseError(name, "", "is not UTF-8 text; save the file as UTF-8") from None
+    data = read_regular(path, MOST.yaml_bytes, "give JSON, or keep fewer samples")
+    text = decoded(data, name, "give YAML text")
     import yaml
 
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -139,5 +147,5 @@ def _check_depth(text: str, name: str) -> None:
         elif sign in "]}":
             depth = max(0, depth - 1)
     indents = max((len(x) - len(x.lstrip(" -")) for x in text.splitlines()), default=0)
-    if deepest > _DEEPEST or indents > 10 * _DEEPEST:
+    if deepest > MOST.nesting or indents > 10 * MOST.nesting:
         raise CaseError(name, "", "is nested too deeply; no message is")

@@ -11,7 +11,9 @@ import numpy as np
 from ..arrays import Array
 from ..curves import MAX_COEFFICIENTS
 from ..errors import CaseError, TrajgapError
-from .motion import MOST_VALUES, Motion
+from ..files import MOST
+from .motion import Motion
+from .plain_data import check_names
 
 POLYNOMIAL_FORMAT = "trajgap-motion/1"
 """Key `format` of such a file, so a later form can be told from this one."""
@@ -42,11 +44,10 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
         key, axes = "c", (0, 1, 2)
     breaks = _array(name, "breaks" if "breaks" in found else "x", found, 1)
     c = _array(name, key, found, 3)
-    if c.size > 10 * MOST_VALUES:
+    if c.size > 10 * MOST.positions:
         raise CaseError(name, key, f"{c.size} coefficients are too many; keep fewer")
     labels = found.get("joints") or ()
-    if not isinstance(labels, list | tuple) or not all(isinstance(x, str) and x for x in labels):
-        raise CaseError(name, "joints", "is not a list of names; give one name per joint")
+    check_names(labels, name, "joints")
     c = c.transpose(axes)
     if c.shape[0] == 0 or c.shape[1] != breaks.size - 1:
         raise CaseError(

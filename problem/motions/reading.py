@@ -27,32 +27,17 @@ UNITS = ("rad", "deg", "m", "cm", "mm")
 """Units of positions in a file without units of its own."""
 
 
-@dataclass(frozen=True)
-class Stated:
-    """What is said of the noise of a file's numbers; None where their digits say it."""
-
-    noise: Sequence[float] | None
-    time_noise: float | None
-
-
 @dataclass(frozen=True, eq=False)
 class ForeignFile:
-    """The content of a file.
-
-    Attributes
-    ----------
-    content : Samples or Motion
-        rad (m), s.
-    units : tuple of str
-        Unit of each joint, in the file and in output.
-    controller : bool
-        Whether a controller's interpolation is known: ROS trajectories.
-    """
+    """The content of a file."""
 
     format: str
     content: Samples | Motion
+    """rad (m), s."""
     units: tuple[str, ...]
+    """Unit of each joint, in the file and in output."""
     controller: bool = False
+    """Whether a controller's interpolation is known: ROS trajectories."""
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -119,33 +104,26 @@ def read_motion(
     time_noise : float, optional
         Uncertainty of the times, s; by default it follows from their digits.
     """
-    name, ending = str(path), path.suffix.lower()
-    stated = Stated(noise, time_noise)
     for one in units:
         if one not in UNITS:
             raise CaseError("--units", "", f"{one!r} is unknown; use {', '.join(UNITS)}")
-    given, units = units, tuple(units) or ("rad",)
+    asked = _Asked(str(path), tuple(units), noise, time_noise)
+    ending = path.suffix.lower()
     if ending in (".bag", ".mcap", ".db3") or path.is_dir():
         from .rosbag import read_rosbag
 
-        return _ros(name, read_rosbag(path, topic), units, stated, "ROS bag")
+        return asked.ros(read_rosbag(path, topic), "ROS bag")
     if ending in (".yaml", ".yml"):
-        return _message(name, read_yaml(path), units, stated, "ROS JointTrajectory, YAML")
+        return asked.message(read_yaml(path), "ROS JointTrajectory, YAML")
     if ending == ".json":
         found = read_json(path)
-        if isinstance(found, Mapping) and (
-            "coefficients" in found or ("c" in found and "x" in found)
-        ):
-            return _polynomials(name, found, given, stated)
-        return _message(name, found, units, stated, "ROS JointTrajectory, JSON")
-    parquet = ending in (".parquet", ".pq")
-    samples = (read_parquet if parquet else read_csv)(path, joints)
-    factors = factors_of(units, len(samples.joints), name)
-    return ForeignFile(
-        "Parquet" if parquet else "CSV",
-        _scaled(name, samples, factors, stated),
-        _each(units, len(samples.joints)),
-    )
+        keys = found.keys() if isinstance(found, Mapping) else ()
+        if "coefficients" in keys or ("c" in keys and "x" in keys):
+            return asked.polynomials(found)
+        return asked.message(found, "ROS JointTrajectory, JSON")
+    if ending in (".parquet", ".pq"):
+        return asked.samples(read_parquet(path, joints), "Parquet")
+    return asked.samples(read_csv(path, joints), "CSV")
 
 
 def factors_of(units: Sequence[str], count: int, name: str) -> Array:
@@ -167,54 +145,79 @@ def _each(units: Sequence[str], count: int) -> tuple[str, ...]:
     return tuple(units) * (count if len(units) == 1 else 1)
 
 
-def _scaled(name: str, samples: Samples, factors: Array, stated: Stated) -> Samples:
-    count = len(samples.joints)
-    noise = np.array((0.0,) if stated.noise is None else stated.noise, dtype=np.float64)
-    if noise.size not in (1, count):
-        raise CaseError(
-            name, "--noise", f"{noise.size} numbers for {count} joints; give 1 or {count}"
-        )
-    given = (samples.position, samples.velocity, samples.acceleration)
-    position, velocity, acceleration = (x if x is None else x * factors for x in given)
-    assert position is not None
-    rounded = np.array([samples.rounding.of(order, count) * factors for order in range(3)])
-    if stated.noise is not None:
-        rounded[0] = 0.0
-        rounded[:, np.broadcast_to(noise == 0.0, (count,))] = 0.0
-    clock = samples.rounding.time if stated.time_noise is None else 0.0
-    try:
-        return replace(
-            samples,
-            position=position,
-            velocity=velocity,
-            acceleration=acceleration,
-            noise=noise * factors,
-            time_noise=stated.time_noise or 0.0,
-            rounding=HalfUnits(clock, rounded),
-        )
-    except TrajgapError as error:
-        raise CaseError(name, "", str(error)) from None
+@dataclass(frozen=True)
+class _Asked:
+    """A file, with what is said of its units and its noise; None where its digits say it."""
 
+    name: str
+    units: tuple[str, ...]
+    noise: Sequence[float] | None
+    time_noise: float | None
 
-def _polynomials(
-    name: str, found: Mapping[str, Any], units: Sequence[str], stated: Stated
-) -> ForeignFile:
-    if any(stated.noise or ()) or stated.time_noise:
-        option = "--noise" if any(stated.noise or ()) else "--time-noise"
-        raise CaseError(name, option, "applies to samples only; polynomials are the motion itself")
-    motion = motion_of_json(found, name)
-    in_file, count = _stated_units(name, found.get("units", {})), len(motion.joints)
-    if in_file and units and _each(in_file, count) != _each(units, count):
-        raise CaseError(
-            name, "--units", f"the file itself states {', '.join(in_file)}; leave it out"
-        )
-    units = in_file or tuple(units) or ("rad",)
-    factors = factors_of(units, count, name)
-    return ForeignFile(
-        "piecewise polynomials",
-        replace(motion, scaled=motion.scaled * factors, error=motion.error * factors),
-        _each(units, len(motion.joints)),
-    )
+    def samples(self, samples: Samples, words: str, controller: bool = False) -> ForeignFile:
+        """Samples in rad and m."""
+        count, units = len(samples.joints), self.units or ("rad",)
+        factors = factors_of(units, count, self.name)
+        noise = np.array((0.0,) if self.noise is None else self.noise, dtype=np.float64)
+        if noise.size not in (1, count):
+            raise CaseError(
+                self.name, "--noise", f"{noise.size} numbers for {count} joints; give 1 or {count}"
+            )
+        given = (samples.position, samples.velocity, samples.acceleration)
+        position, velocity, acceleration = (x if x is None else x * factors for x in given)
+        assert position is not None
+        rounded = np.array([samples.rounding.of(order, count) * factors for order in range(3)])
+        if self.noise is not None:
+            rounded[0] = 0.0
+            rounded[:, np.broadcast_to(noise == 0.0, (count,))] = 0.0
+        clock = samples.rounding.time if self.time_noise is None else 0.0
+        try:
+            found = replace(
+                samples,
+                position=position,
+                velocity=velocity,
+                acceleration=acceleration,
+                noise=noise * factors,
+                time_noise=self.time_noise or 0.0,
+                rounding=HalfUnits(clock, rounded),
+            )
+        except TrajgapError as error:
+            raise CaseError(self.name, "", str(error)) from None
+        return ForeignFile(words, found, _each(units, count), controller)
+
+    def polynomials(self, found: Mapping[str, Any]) -> ForeignFile:
+        """A motion in rad and m."""
+        if any(self.noise or ()) or self.time_noise:
+            option = "--noise" if any(self.noise or ()) else "--time-noise"
+            why = "applies to samples only; polynomials are the motion itself"
+            raise CaseError(self.name, option, why)
+        motion = motion_of_json(found, self.name)
+        in_file, count = _stated_units(self.name, found.get("units", {})), len(motion.joints)
+        if in_file and self.units and _each(in_file, count) != _each(self.units, count):
+            raise CaseError(
+                self.name, "--units", f"the file itself states {', '.join(in_file)}; leave it out"
+            )
+        units = in_file or self.units or ("rad",)
+        factors = factors_of(units, count, self.name)
+        motion = replace(motion, scaled=motion.scaled * factors, error=motion.error * factors)
+        return ForeignFile("piecewise polynomials", motion, _each(units, count))
+
+    def message(self, found: Any, words: str) -> ForeignFile:
+        """The only trajectory of a message."""
+        held = list(trajectories(found))
+        if not held:
+            why = "contains no trajectory; give joint_names and points, or breaks and coefficients"
+            raise CaseError(self.name, "", why)
+        if len(held) > 1:
+            raise CaseError(self.name, "", f"contains {len(held)} trajectories; keep one")
+        return self.ros(samples_of_message(held[0], self.name), words)
+
+    def ros(self, samples: Samples, words: str) -> ForeignFile:
+        """A trajectory of ROS, which states rad and m."""
+        if any(one in ("deg", "cm", "mm") for one in self.units):
+            why = "a ROS trajectory is in rad and m; leave --units out"
+            raise CaseError(self.name, "--units", why)
+        return self.samples(samples, words, controller=True)
 
 
 def _stated_units(name: str, stated: Any) -> tuple[str, ...]:
@@ -226,32 +229,3 @@ def _stated_units(name: str, stated: Any) -> tuple[str, ...]:
     if not all(isinstance(one, str) and one in UNITS for one in each):
         raise CaseError(name, "units.position", f"is unknown; use {', '.join(UNITS)}")
     return tuple(each)
-
-
-def _message(
-    name: str, found: Any, units: Sequence[str], stated: Stated, words: str
-) -> ForeignFile:
-    held = list(trajectories(found))
-    if not held:
-        raise CaseError(
-            name,
-            "",
-            "contains no trajectory; give joint_names and points, or breaks and coefficients",
-        )
-    if len(held) > 1:
-        raise CaseError(name, "", f"contains {len(held)} trajectories; keep one")
-    return _ros(name, samples_of_message(held[0], name), units, stated, words)
-
-
-def _ros(
-    name: str, samples: Samples, units: Sequence[str], stated: Stated, words: str
-) -> ForeignFile:
-    if any(one in ("deg", "cm", "mm") for one in units):
-        raise CaseError(name, "--units", "a ROS trajectory is in rad and m; leave --units out")
-    count = len(samples.joints)
-    return ForeignFile(
-        words,
-        _scaled(name, samples, factors_of(units, count, name), stated),
-        _each(units, count),
-        True,
-    )

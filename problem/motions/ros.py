@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -10,9 +9,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..printed import MOST_JOINTS, spelt_like
+from ..files import MOST
+from ..printed import spelt_like
 from .digits import HalfUnits, digits_of_values, half_units
-from .motion import MOST_VALUES
+from .plain_data import check_names, number_of
 from .samples import Samples
 
 _INSIDE = ("joint_trajectory", "trajectory", "goal", "request", "action_goal", "planned_trajectory")
@@ -28,10 +28,6 @@ _LATEST = 2**31 - 1
 """Largest whole second of a Duration, whose field has 32 bits; nanoseconds are below 10⁹."""
 
 
-_PLACES = 9
-"""Decimal places of a time: messages have whole nanoseconds."""
-
-
 def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
     """Every JointTrajectory in a message, however it is wrapped."""
     if isinstance(found, Mapping):
@@ -41,7 +37,7 @@ def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
             for key in _INSIDE:
                 if key in found:
                     yield from trajectories(found[key], depth - 1)
-    elif isinstance(found, list) and depth and len(found) <= MOST_JOINTS:
+    elif isinstance(found, list) and depth and len(found) <= MOST.joints:
         for one in found:
             yield from trajectories(one, depth - 1)
 
@@ -85,13 +81,12 @@ def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True)
         If a field is missing or of another length.
     """
     joints, points = message["joint_names"], message["points"]
-    if not isinstance(joints, list) or not all(isinstance(x, str) and x for x in joints):
-        raise CaseError(name, "joint_names", "is not a list of names; give the joints' names")
-    if not 1 <= len(joints) <= MOST_JOINTS:
-        raise CaseError(name, "joint_names", f"{len(joints)} names; give 1 to {MOST_JOINTS}")
+    check_names(joints, name, "joint_names")
+    if not 1 <= len(joints) <= MOST.joints:
+        raise CaseError(name, "joint_names", f"{len(joints)} names; give 1 to {MOST.joints}")
     if not isinstance(points, list) or len(points) < 2:
         raise CaseError(name, "points", "fewer than two points; a motion needs two or more")
-    if len(points) * len(joints) > MOST_VALUES:
+    if len(points) * len(joints) > MOST.positions:
         raise CaseError(name, "points", f"{len(points)} points are too many; keep fewer")
     times = np.empty(len(points))
     values = np.full((3, len(points), len(joints)), np.nan)
@@ -115,7 +110,7 @@ def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True)
                 why = f"{count} for {len(joints)} joints; give one each"
                 raise CaseError(name, f"{field}.{key}", why)
             for j, value in enumerate(given):
-                values[order, k, j] = _number(value, name, f"{field}.{key}[{j}]")
+                values[order, k, j] = number_of(value, name, f"{field}.{key}[{j}]")
     try:
         q, v, a = values
         rounding = _rounding(times, values, text)
@@ -130,20 +125,8 @@ def _rounding(times: Array, values: Array, text: bool) -> HalfUnits:
     for order, one in enumerate(values):
         if text and not np.isnan(one).all():
             rounded[order] = half_units(one, digits_of_values(one))
-    nanoseconds = half_units(times[:, None], np.array([[_PLACES, 0]]))
+    nanoseconds = half_units(times[:, None], np.array([[9, 0]]))
     return HalfUnits(float(nanoseconds[0]), rounded)
-
-
-def _number(value: Any, name: str, field: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise CaseError(name, field, f"{str(value)[:40]!r} is not a number; fix it")
-    try:
-        found = float(value)
-    except OverflowError:
-        found = math.inf
-    if not math.isfinite(found):
-        raise CaseError(name, field, "is not finite; give a number")
-    return found
 
 
 def _seconds(given: Any, name: str, field: str) -> float:
@@ -155,7 +138,7 @@ def _seconds(given: Any, name: str, field: str) -> float:
         raise CaseError(name, field, "has no sec or other fields; give sec and nanosec alone")
     if given is None:
         raise CaseError(name, field, "is missing; give sec and nanosec")
-    seconds = _number(given, name, field)
+    seconds = number_of(given, name, field)
     if not 0 <= seconds <= _LATEST:
         raise CaseError(name, field, f"is {seconds:g}; give seconds from 0 to {_LATEST}")
     return seconds

@@ -8,14 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
-from ..files import check_name, check_regular
+from ..files import MOST, check_name, check_regular
 from .ros import samples_of_message, trajectories
 from .samples import Samples
-
-LARGEST_BAG = 2_000_000_000
-"""Bytes of a bag: a recording of an hour; what is read of it is one message."""
-_MOST_MESSAGES = 100_000
-"""Messages that are looked through for trajectories."""
 
 
 def read_rosbag(path: Path, topic: str | None = None) -> Samples:
@@ -51,7 +46,7 @@ def read_rosbag(path: Path, topic: str | None = None) -> Samples:
                 raise CaseError(name, "", "has no metadata.yaml beside it; name the bag's folder")
     for one in files:
         check_regular(one)
-        if one.stat().st_size > LARGEST_BAG:
+        if one.stat().st_size > MOST.bag_bytes:
             raise CaseError(str(one), "", "is larger than 2 GB; record the trajectory alone")
     try:
         from rosbags.highlevel import AnyReader
@@ -76,7 +71,7 @@ def read_rosbag(path: Path, topic: str | None = None) -> Samples:
                 raise CaseError(name, topic or "", f"no topic with a trajectory; topics: {known}")
             for count, (connection, _, raw) in enumerate(reader.messages(connections=wanted)):
                 held += trajectories(_plain(reader.deserialize(raw, connection.msgtype)))
-                if count > _MOST_MESSAGES or len(held) > 1:
+                if count > MOST.messages or len(held) > 1:
                     break
     except CaseError:
         raise

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..files import MOST
 from .digits import HalfUnits
-from .motion import EPS, LARGEST, MOST_VALUES, check_joints, check_times, numbered
+from .motion import EPS, LARGEST, check_joints, check_times, numbered
 
 
 class Interpolation(StrEnum):
@@ -36,21 +37,6 @@ class Interpolation(StrEnum):
 class Samples:
     """Rows of time and position of every joint, with derivatives if they are given.
 
-    Attributes
-    ----------
-    time : ndarray, shape (rows,)
-        s, ascending.
-    position : ndarray, shape (rows, joints)
-        rad (m for sliding joints).
-    velocity, acceleration : ndarray, shape (rows, joints), or None
-        Derivatives, if given; NaN in rows without them.
-    noise : float or ndarray, shape (joints,)
-        Each position is measured to within this, rad.
-    time_noise : float
-        Each time is measured to within this, s.
-    rounding : HalfUnits
-        Uncertainty of all numbers from rounding when they were written, in addition to the noise.
-
     Raises
     ------
     TrajgapError
@@ -59,12 +45,18 @@ class Samples:
 
     joints: tuple[str, ...]
     time: Array
+    """Shape (rows,); s, ascending."""
     position: Array
+    """Shape (rows, joints); rad (m for sliding joints)."""
     velocity: Array | None = None
     acceleration: Array | None = None
+    """Shape (rows, joints). Derivatives, if given; NaN in rows without them."""
     noise: float | Array = 0.0
+    """One number, or shape (joints,). Each position is measured to within this, rad."""
     time_noise: float = 0.0
+    """Each time is measured to within this, s."""
     rounding: HalfUnits = field(default_factory=HalfUnits)
+    """Uncertainty of all numbers from rounding when they were written, in addition to the noise."""
 
     def __post_init__(self) -> None:
         for name in ("time", "position", "velocity", "acceleration"):
@@ -83,9 +75,9 @@ class Samples:
         check_joints(self.joints, count)
         if self.time.shape != (rows,):
             raise TrajgapError(f"time: {self.time.size} times for {rows} rows; give one a row")
-        if rows * count > MOST_VALUES:
+        if rows * count > MOST.positions:
             raise TrajgapError(
-                f"{rows} samples of {count} joints; at most {MOST_VALUES:,} positions are read"
+                f"{rows} samples of {count} joints; at most {MOST.positions:,} positions are read"
             )
         check_times(self.time, "time")
         self._check_finite("position", self.position)
@@ -174,11 +166,6 @@ class Samples:
         )
 
     @property
-    def as_given(self) -> Samples:
-        """The same samples with digits that count as exact, apart from stated noise."""
-        return replace(self, rounding=HalfUnits())
-
-    @property
     def assumed(self) -> str:
         """Uncertainty of the numbers, in a sentence; empty if they count as exact."""
         parts = []
@@ -217,9 +204,3 @@ class Samples:
             if self.assumed
             else ""
         )
-
-    def natural(self) -> Interpolation:
-        """The smoothest Hermite interpolation that the columns allow for every sample."""
-        if self.has(1).all() and self.has(2).all():
-            return Interpolation.QUINTIC
-        return Interpolation.CUBIC if self.has(1).all() else Interpolation.LINEAR

@@ -12,14 +12,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..files import read_regular
-from ..printed import MOST_JOINTS
+from ..files import MOST, decoded, read_regular
 from .digits import HalfUnits, digits_of_text, half_units
-from .motion import MOST_VALUES, numbered
+from .motion import numbered
 from .samples import Samples
 
-LARGEST_FILE = 500_000_000
-"""Bytes of a table: ten million positions with derivatives of 17 digits each."""
 _TIME = re.compile(
     r"(t|time|times|timestamp|time[ _]?(from[ _]start)?[ _]?[\[(]?s(ec(onds)?)?[\])]?)"
 )
@@ -35,8 +32,6 @@ _SYMBOLS = _WORDS | {"v": 1, "a": 2}
 these count only beside a column of positions with that number."""
 _UNIT = re.compile(r".*(?:[\[(][^\])]*[\])]|[ _./-](?P<unit>deg|degrees?|mm|cm))", re.IGNORECASE)
 """A name that ends in a unit: any in brackets, or one that is not the default."""
-_LATEST = 253_402_300_800
-"""Seconds from 1970 to the year 10000: later times are milliseconds or less, not seconds."""
 _GAP = r"[ ._:/-]"
 """What stands between a joint's name and such a word."""
 
@@ -59,14 +54,8 @@ def read_csv(path: Path, joints: Sequence[str] = ()) -> Samples:
         If it is not such a table; the line says where and how to fix it.
     """
     name = str(path)
-    data = read_regular(path, LARGEST_FILE, "split it, or keep fewer rows")
-    if b"\0" in data[:100_000]:
-        raise CaseError(name, "", "is a binary file; give CSV text, Parquet or a ROS message")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise CaseError(name, f"line {line}", "is not UTF-8 text; save the file as UTF-8") from None
+    data = read_regular(path, MOST.table_bytes, "split it, or keep fewer rows")
+    text = decoded(data, name, "give CSV text, Parquet or a ROS message")
     return parse_csv(text, name, joints)
 
 
@@ -101,7 +90,7 @@ def _is_number(word: str) -> bool:
 
 def check_size(name: str, rows: int, columns: int) -> None:
     """Refuse tables that are too large to be read."""
-    if rows * columns > 4 * MOST_VALUES or columns > 3 * MOST_JOINTS + 1:
+    if rows * columns > 4 * MOST.positions or columns > 3 * MOST.joints + 1:
         raise CaseError(name, "", f"{rows} rows of {columns} columns are too many; keep fewer")
 
 
@@ -172,7 +161,12 @@ def samples_of_columns(
     else:
         labels = numbered(table.shape[1] - 1)
         time, columns = 0, {(joint, 0): k for k, joint in enumerate(labels, 1)}
-    _check_seconds(name, table[:, time])
+    latest = float(np.abs(table[:, time]).max())
+    # Seconds from 1970 to the year 10000: later times are milliseconds or less.
+    if 253_402_300_800 < latest < np.inf:
+        raise CaseError(
+            name, "time", f"is {latest:g}, which is not a time in seconds; convert it to seconds"
+        )
     parts: list[Array | None] = []
     rounded = np.zeros((3, len(labels)))
     for order, word in enumerate(("position", "velocity", "acceleration")):
@@ -199,14 +193,6 @@ def samples_of_columns(
         )
     except TrajgapError as error:
         raise CaseError(name, "", str(error)) from None
-
-
-def _check_seconds(name: str, times: Array) -> None:
-    latest = float(np.abs(times).max())
-    if _LATEST < latest < np.inf:
-        raise CaseError(
-            name, "time", f"is {latest:g}, which is not a time in seconds; convert it to seconds"
-        )
 
 
 def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:

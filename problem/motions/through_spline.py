@@ -18,13 +18,6 @@ _TINY = float(np.finfo(_FINE).eps)
 """Spacing of that type at 1."""
 _Numbers = NDArray[np.floating]
 """Float64 or that type."""
-_SOLVED_UP = 1.0 + 1e-9
-"""Covers the rounding of bounds."""
-_SLACK = 1.001
-"""By so much a solved bound is larger than asked, so its rounding leaves it a bound where
-neighbouring durations differ a millionfold: it is checked, and may be a thousandth too wide."""
-_CORRECTIONS = 3
-"""Solutions of the residual in float64: each gains some twelve digits, and fewer remain."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +162,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
     slope = step / h
     right = 6 * np.diff(slope) / clock.whole
     inner = clock.rows.solve(right).astype(_FINE)
-    for _ in range(_CORRECTIONS):
+    for _ in range(3):  # each gains some twelve digits, and fewer remain
         inner = inner + clock.rows.solve(right - clock.rows.times(inner))
     # What the data change in the right-hand side and in the matrix.
     slope_off = (doubt[1:] + doubt[:-1] + np.abs(slope) * clock.off) / least
@@ -198,7 +191,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
         )
     ]
     bent = np.concatenate([[float(outer[0])], bent, [float(outer[1])]])
-    bent = _SOLVED_UP * bent
+    bent = (1.0 + 1e-9) * bent  # more than bounds are rounded by
     first, last = bending[:-1], bending[1:]
     for power, one in enumerate(
         (
@@ -225,7 +218,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
     rounded = 16 * _TINY * (np.abs(fine[:-1]) + np.abs(step) + h * h * size)
     terms = derivative_terms(scaled[:, :, None], h.astype(np.float64))[:, :, 0]
     for r in range(4):
-        error[:, r] = _SOLVED_UP * (error[:, r] + 4 * EPS * terms[:, r] + 12 * rounded / h**r)
+        error[:, r] = (1.0 + 1e-9) * (error[:, r] + 4 * EPS * terms[:, r] + 12 * rounded / h**r)
 
 
 def _bounded(bound: _Rows | None, excess: Array) -> Array:
@@ -233,7 +226,9 @@ def _bounded(bound: _Rows | None, excess: Array) -> Array:
     nothing = np.full(excess.size, np.inf)
     if bound is None or not np.isfinite(excess).all():
         return nothing
-    found = bound.solve(_SLACK * excess + 1e-300)
+    # A thousandth more than asked: rounding leaves it a bound, which is checked below, where
+    # neighbouring durations differ a millionfold.
+    found = bound.solve(1.001 * excess + 1e-300)
     sizes = _Rows(-bound.left, bound.own, -bound.right).times(np.abs(found))
     kept = bound.times(found) - 8 * EPS * sizes >= excess
     return found if bool(kept.all() and (found >= 0).all()) else nothing

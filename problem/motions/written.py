@@ -12,18 +12,14 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..files import MOST
 from .interpolation import interpolated
-from .motion import MOST_VALUES, Motion
+from .motion import Motion
 from .plain_data import parse_json
 from .polynomial_file import motion_of_json, polynomial_json
 from .ros import message_of_samples, samples_of_message
 from .samples import Interpolation, Samples
 from .tables import parse_csv
-
-_RESTING = 1e-9
-"""Speed, rad/s, below which the end of a motion is a rest: within a nanosecond it moves nowhere."""
-_APART = 0.3
-"""Share of a step that rows are apart at least: near the end and near breaks of the motion."""
 
 
 class MotionForm(StrEnum):
@@ -75,18 +71,19 @@ def sampled(
     total = end - begin
     if not (np.isfinite(step) and step > 0):
         raise TrajgapError(f"step: {step} is not a time between samples; give seconds, more than 0")
-    if total / step > MOST_VALUES:
+    if total / step > MOST.positions:
         raise TrajgapError(f"step: {total / step:.3g} samples are too many; take a longer step")
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)
     if whole_nanoseconds:
-        # At rest the end may come a part of a nanosecond late; a motion that continues may not.
-        still = not np.abs(np.asarray(motion(end, 1))).max() > _RESTING
+        # At rest, below 1e-9 rad/s, the end may come a part of a nanosecond late; a motion that
+        # continues may not.
+        still = not np.abs(np.asarray(motion(end, 1))).max() > 1e-9
         last = (np.ceil if still else np.floor)(total * 1e9)
         whole = np.unique(np.minimum(np.append(np.round(times[:-1] * 1e9), last), last))
         times = whole // 10**9 + 1e-9 * (whole % 10**9)
     at = np.clip(begin + times, begin, end)
     values = [np.asarray(motion(at, order), dtype=np.float64) for order in range(3)]
-    if values[0].size > MOST_VALUES:
+    if values[0].size > MOST.positions:
         raise TrajgapError(f"step: {times.size} samples are too many; take a longer step")
     named = getattr(motion, "joints", ())
     labels = joints or (named if isinstance(named, tuple) else ())
@@ -104,7 +101,7 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
         np.abs(fixed[np.minimum(after, fixed.size - 1)] - grid),
         np.abs(grid - fixed[np.maximum(after - 1, 0)]),
     )
-    return np.asarray(np.unique(np.append(fixed, grid[near > _APART * step])))
+    return np.asarray(np.unique(np.append(fixed, grid[near > 0.3 * step])))
 
 
 def csv_text(samples: Samples, units: Array | float = 1.0) -> str:

@@ -1,11 +1,5 @@
-from .bounds import shown_bound as shown_bound
 from .described import Described as Described
 from .fields import (
-    LARGEST_SEED as LARGEST_SEED,
-    MOST_ENTRIES as MOST_ENTRIES,
-    MOST_JOINTS as MOST_JOINTS,
-    MOST_POSES as MOST_POSES,
-    MOST_WAYPOINTS as MOST_WAYPOINTS,
     UNION_TAGS as UNION_TAGS,
     AccelerationUnits as AccelerationUnits,
     Id as Id,
@@ -34,6 +28,7 @@ from .fields import (
     VelocityUnits as VelocityUnits,
     describe as describe,
     fault as fault,
+    plain_number as plain_number,
     read_number as read_number,
     spelling_hint as spelling_hint,
     spelt_like as spelt_like,
@@ -44,6 +39,7 @@ from .rounded import (
     Printed as Printed,
     down as down,
     read_float as read_float,
+    shown_bound as shown_bound,
     up as up,
 )
 from .units import (

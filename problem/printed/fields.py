@@ -24,22 +24,15 @@ from pydantic_core import PydanticCustomError
 
 from ..duration_ratios import RATIO_WORDS
 from ..errors import TrajgapError
+from ..files import MOST
 from .described import Described
 from .rounded import Printed
 from .units import CHOICES, Quantity, check_unit
 
-MOST_WAYPOINTS = 10_000
-"""Way-points of one problem: the curve through them takes half a second and 50 MB to declare."""
 MOST_POSES = 500
 """Poses of a straight line in a case file: each takes some milliseconds of inverse kinematics."""
-MOST_JOINTS = 100
-"""Joints of one robot: no arm and no humanoid has as many."""
-MOST_ENTRIES = 1_000
-"""Entries of one list of a case file, such as its claims: no paper prints as many."""
 RATIO_CHOICES = (*RATIO_WORDS, "free")
 """Words for ratios of durations in case files; "free" takes back what the file fixes."""
-LARGEST_SEED = 2**63 - 1
-"""Largest seed: what TOML promises to keep."""
 
 
 def fault(
@@ -162,16 +155,11 @@ def _upper_limit(raw: object) -> Printed | None:
 
 @dataclass(frozen=True)
 class LimitPair:
-    """The least and the largest value that a derivative may take, as printed.
-
-    Attributes
-    ----------
-    lower, upper : Printed or None
-        0 or less, and 0 or more; None if there is no limit.
-    """
+    """The least and the largest value that a derivative may take, as printed."""
 
     lower: Printed | None
     upper: Printed | None
+    """0 or less, and 0 or more; None if there is no limit."""
 
     def __str__(self) -> str:
         low, high = (("-inf" if self.lower is None else self.lower), self.upper or "inf")
@@ -215,7 +203,8 @@ def _position_limit(side: str) -> Any:
     return read
 
 
-def _plain(number: Printed | None) -> str | int | float | None:
+def plain_number(number: Printed | None) -> str | int | float | None:
+    """A number as a file of plain data states it: printed digits as text, exact ones bare."""
     if number is None or not number.exact:
         return None if number is None else number.text
     return int(number.fraction) if number.fraction.denominator == 1 else number.value
@@ -223,8 +212,8 @@ def _plain(number: Printed | None) -> str | int | float | None:
 
 def _plain_entry(entry: Printed | LimitPair | None) -> Any:
     if not isinstance(entry, LimitPair):
-        return _plain(entry)
-    low, high = _plain(entry.lower), _plain(entry.upper)
+        return plain_number(entry)
+    low, high = plain_number(entry.lower), plain_number(entry.upper)
     return ["-inf" if low is None else low, "inf" if high is None else high]
 
 
@@ -250,7 +239,7 @@ _PAIR_SCHEMA = {
 """As a limit, and two of them."""
 
 
-def _read_by(read: Any, schema: dict[str, Any], plain: Any = _plain) -> tuple[Any, ...]:
+def _read_by(read: Any, schema: dict[str, Any], plain: Any = plain_number) -> tuple[Any, ...]:
     """What makes a field of what a file states: its reader, its writer, and its JSON Schema."""
     return PlainValidator(read), PlainSerializer(plain), WithJsonSchema(schema)
 
@@ -309,8 +298,8 @@ Ratios = _OneOrList[_RatioWord, Ratio]
 """One `Ratio` per segment, or a word."""
 
 PrintedRows = Annotated[
-    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
-    Field(min_length=1, max_length=MOST_WAYPOINTS),
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST.waypoints + 2)], ...],
+    Field(min_length=1, max_length=MOST.waypoints),
 ]
 """A table of numbers, no row empty; control vertices are two more than way-points."""
 
@@ -324,7 +313,7 @@ TextOrEach = _OneOrEach[Text]
 Label = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$")]
 """A few words on one line, which stand for what they name within a sentence or a cell."""
 
-JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST_JOINTS)]
+JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST.joints)]
 
 
 def _units(quantity: Quantity) -> tuple[Any, ...]:

@@ -6,13 +6,14 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from decimal import Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 from ..errors import TrajgapError
+from ..files import MOST
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """One decimal number; group 2 is the exponent."""
@@ -20,10 +21,6 @@ MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0
 """Minus signs that are printed or extracted, to the ASCII one."""
 _INFINITE = ("inf", "+inf", "-inf", "infinity", "+infinity", "-infinity")
 """Words for what has no bound, as Python reads them."""
-_LONGEST = 64
-"""Characters of one number: printed digits are fewer, and arithmetic on more could run away."""
-_LARGEST_EXPONENT = 300
-"""Powers of ten that a float64 holds, with room for units and outward rounding."""
 
 
 class Interval(NamedTuple):
@@ -65,8 +62,8 @@ def read_float(text: str) -> float:
 def _short(text: str) -> str:
     """The characters of a number, of bounded length, with an ASCII minus sign."""
     word = text.strip().translate(MINUS_SIGNS)
-    if len(word) > _LONGEST:
-        raise TrajgapError(f"a number of {len(word)} characters; at most {_LONGEST} are read")
+    if len(word) > MOST.digits:
+        raise TrajgapError(f"a number of {len(word)} characters; at most {MOST.digits} are read")
     return word
 
 
@@ -123,10 +120,10 @@ class Printed:
                 'such as "0.660"'
             )
         exponent = int(match[2][1:]) if match[2] else 0
-        if abs(exponent) > _LARGEST_EXPONENT or Decimal(text).adjusted() > _LARGEST_EXPONENT:
+        if abs(exponent) > MOST.exponent or Decimal(text).adjusted() > MOST.exponent:
             raise TrajgapError(
-                f"{self.text!r} is out of range; magnitudes from 1e-{_LARGEST_EXPONENT} to "
-                f"1e{_LARGEST_EXPONENT} are read"
+                f"{self.text!r} is out of range; magnitudes from 1e-{MOST.exponent} to "
+                f"1e{MOST.exponent} are read"
             )
         object.__setattr__(self, "text", text)
 
@@ -229,3 +226,47 @@ class Printed:
 
     def __str__(self) -> str:
         return self.text
+
+
+_SIDES = {"lower": ROUND_FLOOR, "upper": ROUND_CEILING}
+"""What is at least so much is rounded down, what is at most so much up; negative numbers too."""
+
+
+def shown_bound(
+    value: Fraction | float, side: str, *, digits: int | None = None, places: int | None = None
+) -> str:
+    """A lower or an upper bound as text that is a bound as well.
+
+    Parameters
+    ----------
+    side : {"lower", "upper"}
+        "lower" if something is at least the value, "upper" if it is at most the value.
+    digits : int, optional
+        Significant digits at most; zeros at the end are left out.
+    places : int, optional
+        Decimals, instead of `digits`; all of them are written.
+
+    Returns
+    -------
+    str
+        "inf" or "-inf" for an infinite value.
+
+    Examples
+    --------
+    >>> shown_bound(4.0604, "lower", places=1), shown_bound(4.0604, "upper", places=1)
+    ('4.0', '4.1')
+    >>> shown_bound(Fraction(2, 3), "upper", digits=3)
+    '0.667'
+    """
+    if isinstance(value, float) and value in (float("inf"), float("-inf")):
+        return str(value)
+    # A float stands for the shortest decimal that reads as it, such as a printed end of 1.905.
+    exact = Fraction(repr(float(value))) if isinstance(value, float) else Fraction(value)
+    over, under = Decimal(exact.numerator), Decimal(exact.denominator)
+    if places is None:
+        found = Context(digits or 6, _SIDES[side]).divide(over, under).normalize()
+        return f"{found:f}"
+    # More digits than any double has before and after the point: nothing is rounded before the end.
+    work = Context(400, _SIDES[side])
+    found = work.divide(over, under).quantize(Decimal(1).scaleb(-places), _SIDES[side], work)
+    return f"{found if found else abs(found):f}"

@@ -17,31 +17,18 @@ Quantity = Literal["position", "velocity", "acceleration", "jerk", "time"]
 AngleUnit = Literal["rad", "deg"]
 LengthUnit = Literal["m", "cm", "mm"]
 """Of links, of positions of the end, and of joints that slide."""
-PositionUnit = Literal["rad", "deg", "m", "cm", "mm"]
-VelocityUnit = Literal[
-    "rad/s",
-    "deg/s",
-    "rpm",
-    "deg/min",
-    "rad/min",
-    "m/s",
-    "cm/s",
-    "mm/s",
-    "m/min",
-    "cm/min",
-    "mm/min",
-]
-AccelerationUnit = Literal["rad/s^2", "deg/s^2", "m/s^2", "cm/s^2", "mm/s^2"]
-JerkUnit = Literal["rad/s^3", "deg/s^3", "m/s^3", "cm/s^3", "mm/s^3"]
-TimeUnit = Literal["s", "ms", "min"]
 
+_POSITIONS = (*get_args(AngleUnit), *get_args(LengthUnit))
 CHOICES = MappingProxyType(
     {
-        "position": get_args(PositionUnit),
-        "velocity": get_args(VelocityUnit),
-        "acceleration": get_args(AccelerationUnit),
-        "jerk": get_args(JerkUnit),
-        "time": get_args(TimeUnit),
+        "position": _POSITIONS,
+        "velocity": (
+            *("rad/s", "deg/s", "rpm", "deg/min", "rad/min"),
+            *("m/s", "cm/s", "mm/s", "m/min", "cm/min", "mm/min"),
+        ),
+        "acceleration": tuple(f"{unit}/s^2" for unit in _POSITIONS),
+        "jerk": tuple(f"{unit}/s^3" for unit in _POSITIONS),
+        "time": ("s", "ms", "min"),
     }
 )
 """The units known for each quantity."""
@@ -67,36 +54,20 @@ class Scale:
         return (self.rational * _PI[0], self.rational * _PI[1])
 
 
-_ANGLES = MappingProxyType({"rad": Scale(Fraction(1)), "deg": Scale(Fraction(1, 180), 1)})
-"""Factor of every unit of angle to radians."""
-_LENGTHS = MappingProxyType(
+_SCALES = MappingProxyType(
     {
+        "rad": Scale(Fraction(1)),
+        "deg": Scale(Fraction(1, 180), 1),
         "m": Scale(Fraction(1)),
         "cm": Scale(Fraction(1, 100)),
         "mm": Scale(Fraction(1, 1000)),
-    }
-)
-"""Factor of every unit of length to metres."""
-_MINUTE = 60
-"""Seconds in a minute."""
-_SCALES = MappingProxyType(
-    {
-        **{
-            unit + per: factor
-            for unit, factor in (*_ANGLES.items(), *_LENGTHS.items())
-            for per in ("", "/s", "/s^2", "/s^3")
-        },
-        **{
-            f"{unit}/min": Scale(factor.rational / _MINUTE, factor.pi)
-            for unit, factor in (*_ANGLES.items(), *_LENGTHS.items())
-        },
-        "rpm": Scale(Fraction(2, _MINUTE), 1),
+        "rpm": Scale(Fraction(2, 60), 1),
         "s": Scale(Fraction(1)),
         "ms": Scale(Fraction(1, 1000)),
-        "min": Scale(Fraction(_MINUTE)),
+        "min": Scale(Fraction(60)),
     }
 )
-"""Factor of every unit to radians, seconds and metres; a turn is 2π rad."""
+"""Factor of every unit before a slash to radians, metres and seconds; a turn is 2π rad."""
 _WRITTEN = (
     (r"[·⋅*.\s]+", ""),
     (r"revolutionsperminute|rev(?:olution)?s?(?:/|per)min(?:ute)?|r/min|1/min", "rpm"),
@@ -124,7 +95,7 @@ replaced."""
 
 def is_linear(unit: str) -> bool:
     """Whether a unit of a joint's position or of a derivative is one of length."""
-    return unit.split("/")[0] in _LENGTHS
+    return unit.split("/")[0] in get_args(LengthUnit)
 
 
 def shown_unit(unit: str) -> str:
@@ -132,6 +103,7 @@ def shown_unit(unit: str) -> str:
     return unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
 
 
+@lru_cache(maxsize=64)
 def scale(unit: str) -> Scale:
     """Exact factor from ``unit`` to radians, metres and seconds.
 
@@ -150,11 +122,12 @@ def scale(unit: str) -> Scale:
     >>> scale("deg/s")
     Scale(rational=Fraction(1, 180), pi=1)
     """
-    try:
-        return _SCALES[unit]
-    except KeyError:
-        known = ", ".join(one for choices in CHOICES.values() for one in choices)
-        raise TrajgapError(f"unknown unit {unit!r}; use one of {known}") from None
+    known = [one for choices in CHOICES.values() for one in choices]
+    if unit not in known:
+        raise TrajgapError(f"unknown unit {unit!r}; use one of {', '.join(known)}")
+    measured, _, per = unit.partition("/")
+    found = _SCALES[measured]
+    return Scale(found.rational / 60, found.pi) if per == "min" else found
 
 
 def check_unit(unit: object, quantity: Quantity) -> str:

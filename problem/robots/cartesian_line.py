@@ -13,29 +13,19 @@ from ..errors import TrajgapError
 from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
-POINTS = 9
-"""Poses of a line by default: eight steps, so a joint curve stays near the line."""
-LARGEST_STEP = np.pi / 2
-"""Joint motion between neighbouring poses that counts as another branch of the inverse, rad."""
-
 
 @dataclass(frozen=True, eq=False)
 class CartesianLine:
-    """Joint way-points whose poses lie on a straight line.
-
-    Attributes
-    ----------
-    waypoints : ndarray, shape (points, joints)
-        rad (m where a joint slides); between them a curve leaves the line, see `deviation`.
-    poses : ndarray, shape (points, 4, 4)
-    residual : float
-        Largest distance of forward kinematics from a pose, m and rad.
-    """
+    """Joint way-points whose poses lie on a straight line."""
 
     chain: Chain
     waypoints: Array
+    """Shape (points, joints); rad (m where a joint slides); between them a curve leaves the line,
+    see `deviation`."""
     poses: Array
+    """Shape (points, 4, 4)."""
     residual: float
+    """Largest distance of forward kinematics from a pose, m and rad."""
 
     @property
     def table(self) -> str:
@@ -67,11 +57,11 @@ def ctraj(
     chain: Chain,
     first: ArrayLike,
     last: ArrayLike,
-    points: int = POINTS,
+    points: int = 9,
     *,
     guess: ArrayLike | None = None,
     seed: int = 0,
-    largest_step: float = LARGEST_STEP,
+    largest_step: float = np.pi / 2,
 ) -> CartesianLine:
     """Joint way-points of a straight move between two poses, as the toolboxes' ``ctraj`` makes it.
 
@@ -84,7 +74,7 @@ def ctraj(
     first, last : array_like, shape (4, 4)
         Poses of the end in the base, m.
     points : int
-        Number of poses, both ends included.
+        Number of poses, both ends included; with eight steps a joint curve stays near the line.
     guess : array_like, shape (joints,), optional
         Joints near those of the first pose; chooses the branch.
     seed : int

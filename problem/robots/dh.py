@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal, Self
@@ -12,8 +13,9 @@ import numpy as np
 from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
 
 from ..arrays import Array
+from ..files import MOST
 from ..printed import (
-    MOST_JOINTS,
+    MINUS_SIGNS,
     AngleUnit,
     JointLabels,
     LengthUnit,
@@ -24,6 +26,7 @@ from ..printed import (
     Strict,
     UpperPosition,
     fault,
+    plain_number,
     read_number,
     to_si,
 )
@@ -31,12 +34,6 @@ from .chain import Chain, Convention, JointKind
 
 _PI_MULTIPLE = re.compile(r"([+-]?)\s*([0-9]*)\s*(?:π|pi)\s*(?:/\s*([1-9][0-9]*))?")
 """A multiple of π: sign, numerator, denominator."""
-_MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})
-"""Minus signs that are printed, to the ASCII one."""
-_PI = Fraction(math.pi)
-"""π as every toolbox takes it: exactly the double."""
-_LONGEST = 64
-"""Characters of a multiple of π that are read, as of any number."""
 
 
 @dataclass(frozen=True)
@@ -49,25 +46,23 @@ class PiMultiple:
     @property
     def value(self) -> float:
         """The angle in rad."""
-        return float(self.factor * _PI)
+        return float(self.factor * Fraction(math.pi))  # exactly the double, as in every toolbox
 
 
 def read_angle(raw: object) -> Printed | PiMultiple:
     """Read a printed or exact number, or a multiple of π."""
     if isinstance(raw, PiMultiple):
         return raw
-    text = raw.strip().translate(_MINUS_SIGNS) if isinstance(raw, str) else ""
+    text = raw.strip().translate(MINUS_SIGNS) if isinstance(raw, str) else ""
     match = _PI_MULTIPLE.fullmatch(text)
-    if match is None or len(text) > _LONGEST:
+    if match is None or len(text) > MOST.digits:
         return read_number(raw)
     factor = Fraction(int(match[2] or 1), int(match[3] or 1))
     return PiMultiple(text, -factor if match[1] == "-" else factor)
 
 
-def _plain(angle: Printed | PiMultiple) -> str | int | float:
-    if isinstance(angle, PiMultiple) or not angle.exact:
-        return angle.text
-    return int(angle.fraction) if angle.fraction.denominator == 1 else angle.value
+def _plain(angle: Printed | PiMultiple) -> str | int | float | None:
+    return angle.text if isinstance(angle, PiMultiple) else plain_number(angle)
 
 
 Angle = Annotated[
@@ -77,9 +72,6 @@ Angle = Annotated[
     WithJsonSchema({"type": ["number", "string"]}),
 ]
 """A `Number`, or a multiple of π such as "-π/2"."""
-
-_EACH = ("d", "a", "alpha", "theta_offset", "kinds", "lower", "upper")
-"""Columns of the table that must be equally long."""
 
 
 class DhTable(Strict):
@@ -98,7 +90,7 @@ class DhTable(Strict):
     """Joint labels; those of the robot if absent."""
     kinds: tuple[JointKind, ...] | None = None
     """revolute or prismatic; all revolute if absent."""
-    d: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_JOINTS)]
+    d: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST.joints)]
     a: tuple[Number, ...]
     alpha: tuple[Angle, ...]
     theta_offset: tuple[Angle, ...] | None = None
@@ -110,7 +102,7 @@ class DhTable(Strict):
 
     @model_validator(mode="after")
     def _one_entry_per_joint(self) -> Self:
-        for name in _EACH:
+        for name in ("d", "a", "alpha", "theta_offset", "kinds", "lower", "upper"):
             row = getattr(self, name)
             if row is not None and len(row) != len(self.d):
                 raise fault(
@@ -199,33 +191,22 @@ class DhTable(Strict):
         angles = name in ("alpha", "theta_offset")
         unit = self.angle_unit if angles else self.length_unit
         zero = Printed("0", exact=True)
-        row = getattr(self, name) or (zero,) * len(self.d)
-        return [_measured(number, unit) for number in row]
+        return [
+            Measured(*(number.value,) * 3)
+            if isinstance(number, PiMultiple)
+            else to_si(number, unit)
+            for number in getattr(self, name) or (zero,) * len(self.d)
+        ]
 
     def _bounds(self) -> tuple[Array, Array]:
-        kinds = self.kinds or (JointKind.REVOLUTE,) * len(self.d)
-        found = []
-        for row, none in ((self.lower, -np.inf), (self.upper, np.inf)):
-            numbers = row or (None,) * len(self.d)
-            units = [
-                self.angle_unit if kind is JointKind.REVOLUTE else self.length_unit
-                for kind in kinds
-            ]
-            found.append(
-                np.array(
-                    [
-                        none if number is None else to_si(number, unit).value
-                        for number, unit in zip(numbers, units, strict=True)
-                    ]
-                )
-            )
-        return found[0], found[1]
+        units = {JointKind.REVOLUTE: self.angle_unit, JointKind.PRISMATIC: self.length_unit}
+        each = [units[kind] for kind in self.kinds or (JointKind.REVOLUTE,) * len(self.d)]
 
+        def bounds(row: Sequence[Printed | None] | None, none: float) -> Array:
+            numbers = zip(row or (None,) * len(each), each, strict=True)
+            return np.array([none if n is None else to_si(n, unit).value for n, unit in numbers])
 
-def _measured(number: Printed | PiMultiple, unit: str) -> Measured:
-    if isinstance(number, PiMultiple):
-        return Measured(number.value, number.value, number.value)
-    return to_si(number, unit)
+        return bounds(self.lower, -np.inf), bounds(self.upper, np.inf)
 
 
 def _values(row: list[Measured]) -> Array:

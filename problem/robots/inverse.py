@@ -20,13 +20,6 @@ POSE = (*POSITION, "rx", "ry", "rz")
 
 REACHED = 1e-9
 """Largest residual that counts as reached, m and rad."""
-_DAMPING = (1e-14, 1e-3, 1e12)
-"""Least, first and largest damping, in units of the normal matrix's largest entry."""
-_FASTER, _SLOWER = 0.1, 6.0
-"""Factors of the damping after a step that helped, and after one that did not: down by ten, up
-more carefully, so a success is not undone at once."""
-_ROTATION_TOLERANCE = 1e-6
-"""Largest entry of R Rᵀ − I of a target: room for rotations typed with seven digits."""
 
 
 class IkStatus(StrEnum):
@@ -42,30 +35,21 @@ class IkStatus(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class IkSolution:
-    """Joint values and how far they miss the target.
-
-    Attributes
-    ----------
-    joints : ndarray, shape (joints,)
-        Joint variables, rad (m where a joint slides), within the bounds; if nothing was solved, the
-        values with the smallest residual.
-    position_error : float
-        Norm of the wanted components of the position residual, m.
-    angle_error : float
-        Norm of the wanted components of the rotation vector to the target, rad; 0 if none.
-    starts, solved_starts : int
-        Starts tried, and how many of them came within the tolerances.
-    iterations : int
-        Steps of the longest start.
-    """
+    """Joint values and how far they miss the target."""
 
     status: IkStatus
     joints: Array
+    """Shape (joints,). Joint variables, rad (m where a joint slides), within the bounds; if nothing
+    was solved, the values with the smallest residual."""
     position_error: float
+    """Norm of the wanted components of the position residual, m."""
     angle_error: float
+    """Norm of the wanted components of the rotation vector to the target, rad; 0 if none."""
     starts: int
     solved_starts: int
+    """Starts tried, and how many of them came within the tolerances."""
     iterations: int
+    """Steps of the longest start."""
 
     @property
     def solved(self) -> bool:
@@ -163,7 +147,8 @@ def question(target: ArrayLike, components: Sequence[str] | None) -> tuple[Array
         rotation = given[:3, :3]
         skew = np.abs(rotation @ rotation.T - np.eye(3)).max()
         last = np.array_equal(given[3], [0, 0, 0, 1])
-        if skew > _ROTATION_TOLERANCE or np.linalg.det(rotation) < 0 or not last:
+        # Room for rotations typed with seven digits.
+        if skew > 1e-6 or np.linalg.det(rotation) < 0 or not last:
             raise TrajgapError("target: is not a pose; give a rotation and the last row 0, 0, 0, 1")
         pose = given
     else:
@@ -244,7 +229,8 @@ def _descend(
     every: bool,
 ) -> tuple[Array, NDArray[np.int64]]:
     """Ends of all starts, and the steps that each took."""
-    floor, first, ceiling = _DAMPING
+    # Damping in units of the normal matrix's largest entry.
+    floor, first, ceiling = 1e-14, 1e-3, 1e12
     # Dimensionless: positions and sliding joints in units of the chain's length.
     unit = np.array([1 / _length(chain)] * 3 + [1.0] * 3)[rows]
     size = np.where(chain.revolute, 1.0, _length(chain))
@@ -280,9 +266,8 @@ def _descend(
         won = at[better]
         q[won], poses[won], error[won] = trial[better], trial_poses[better], trial_error[better]
         cost[won] = trial_cost[better]
-        damping[at] = np.where(
-            better, np.maximum(damping[at] * _FASTER, floor), damping[at] * _SLOWER
-        )
+        # Down by ten, up more carefully, so a success is not undone at once.
+        damping[at] = np.where(better, np.maximum(damping[at] * 0.1, floor), damping[at] * 6.0)
     return q, steps
 
 

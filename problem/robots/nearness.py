@@ -15,25 +15,17 @@ from .inverse import inverse_kinematics
 
 _MOST_BOXES = 400_000
 """Boxes held at once, to bound the memory: the bound so far is returned then, and holds."""
-_POLISH_STARTS = 4
-"""Starts of the inverse kinematics that tells a near miss from a hit, the best centre first."""
 
 
 @dataclass(frozen=True, eq=False)
 class Proximity:
-    """Bounds on the smallest distance between the end and a point.
-
-    Attributes
-    ----------
-    lower, upper : float
-        m. The lower one holds for all values of the free joints; the upper one is attained.
-    joints : ndarray, shape (joints,)
-        Where ``upper`` is attained.
-    """
+    """Bounds on the smallest distance between the end and a point."""
 
     lower: float
     upper: float
+    """m. The lower one holds for all values of the free joints; the upper one is attained."""
     joints: Array
+    """Shape (joints,). Where ``upper`` is attained."""
 
 
 def proximity(
@@ -90,8 +82,8 @@ def proximity(
     bound, best = _bisect(distance, kept.arms, lower, upper, width)
     reached = float(distance(best))
     if 0 < reached <= width and not radial:
-        # Too near for the boxes to tell from a hit.
-        close = inverse_kinematics(kept, goal, 0, guess=best, starts=_POLISH_STARTS)
+        # Too near for the boxes to tell from a hit; the best centre is the first start.
+        close = inverse_kinematics(kept, goal, 0, guess=best, starts=4)
         if distance(close.joints) < reached:
             best, reached = close.joints, float(distance(close.joints))
     return Proximity(min(bound, reached), reached, best)

@@ -13,17 +13,11 @@ from pydantic import model_validator
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..files import MOST
 from ..printed import Id, Strict, Text, fault
 from .chain import Chain, link_frames
+from .inverse import REACHED
 
-SAMPLES = 200
-"""Random joint values at which an equation is tried: one that holds nowhere near all of them is
-told from one that holds at all."""
-LONGEST_EQUATION = 400
-"""Characters of an equation with its definitions: twice the longest printed one, and no deeper
-than a stack bears."""
-_EQUAL_SIDES = 1e-9
-"""Difference of the two sides, beside the larger of them and 1, that float64 alone may leave."""
 _OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: np.add,
     ast.Sub: np.subtract,
@@ -67,19 +61,13 @@ class Equation(Strict):
 
 @dataclass(frozen=True)
 class EquationCheck:
-    """How well an equation holds.
-
-    Attributes
-    ----------
-    share : float
-        Share of the samples at which both sides agree, with either sign of "pm".
-    largest : float
-        Largest difference of the sides over the samples; NaN if a side has no value.
-    """
+    """How well an equation holds."""
 
     text: str
     share: float
+    """Share of the samples at which both sides agree, with either sign of "pm"."""
     largest: float
+    """Largest difference of the sides over the samples; NaN if a side has no value."""
 
     @property
     def holds(self) -> bool:
@@ -87,7 +75,7 @@ class EquationCheck:
         return self.share == 1.0
 
 
-def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 0) -> EquationCheck:
+def check_equation(chain: Chain, text: str, samples: int = 200) -> EquationCheck:
     """Evaluate both sides of an equation at random joint values of a robot.
 
     Parameters
@@ -101,6 +89,9 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
         rotation; ``T1`` the transform of a link, ``T`` that of the end; ``pi``; ``pm`` for ±.
         Between them ``+ - * / ** @``, and sqrt, sin, cos, tan, acos, atan2, inv. An angle that
         stands alone on the left is compared modulo whole turns.
+    samples : int
+        Random joint values at which it is tried: one that holds nowhere near all of them is told
+        from one that holds at all.
 
     Raises
     ------
@@ -114,14 +105,14 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     True
     """
     *definitions, sides = (part.split("=") for part in text.split(";"))
-    if len(text) > LONGEST_EQUATION or any(len(part) != 2 for part in (*definitions, sides)):
+    if len(text) > MOST.equation or any(len(part) != 2 for part in (*definitions, sides)):
         raise TrajgapError(
             f"{_short(text)} is not an equation; write left = right, in at most "
-            f"{LONGEST_EQUATION} characters"
+            f"{MOST.equation} characters"
         )
     if chain.joints > 9 or not chain.revolute.all():
         raise TrajgapError("equations: apply only to chains of fewer than ten joints that all turn")
-    q = np.random.default_rng(seed).uniform(*chain.span(), (samples, chain.joints))
+    q = np.random.default_rng(0).uniform(*chain.span(), (samples, chain.joints))
     frames = link_frames(chain, q)
     differences = []
     for sign in (1.0, -1.0):
@@ -134,7 +125,8 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
                 _apart(left, right, wraps=bool(re.fullmatch(r"\s*t\d\s*", sides[0])))
             )
     apart = np.broadcast_to(np.fmin(*differences), (samples,))
-    return EquationCheck(text, float(np.mean(apart <= _EQUAL_SIDES)), float(apart.max()))
+    # Beside the larger of both sides and 1, float64 alone leaves less.
+    return EquationCheck(text, float(np.mean(apart <= REACHED)), float(apart.max()))
 
 
 def _apart(left: Array, right: Array, wraps: bool) -> Array:

@@ -12,12 +12,6 @@ from ..errors import TrajgapError
 from .chain import Chain, forward_kinematics
 from .inverse import POSE, POSITION, inverse_kinematics
 
-_SHELL = 0.1
-"""Half-width of the shell that the next position is drawn from, as a share of the step."""
-_DRAWS = 20
-"""Positions tried before a step is given up as out of reach."""
-_STARTS = 8
-"""Starts of the inverse kinematics for each of them."""
 _BATCH = 50_000
 """Configurations evaluated at once, to bound the memory."""
 
@@ -33,20 +27,14 @@ class StepKind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """Seeded sample of the positions of a chain's end.
-
-    Attributes
-    ----------
-    joints : ndarray, shape (samples, joints)
-        Uniform within `Chain.span`, rad (m where a joint slides).
-    points : ndarray, shape (samples, 3)
-        Positions of the end in the base, m.
-    """
+    """Seeded sample of the positions of a chain's end."""
 
     chain: Chain
     seed: int
     joints: Array
+    """Shape (samples, joints). Uniform within `Chain.span`, rad (m where a joint slides)."""
     points: Array
+    """Shape (samples, 3). Positions of the end in the base, m."""
 
     @property
     def lower(self) -> Array:
@@ -170,15 +158,17 @@ def _stepped(
     chain = workspace.chain
     here = forward_kinematics(chain, last)[:3, 3]
     far = np.linalg.norm(workspace.points - here, axis=1)
-    near = np.flatnonzero(np.abs(far - step) <= _SHELL * step)
-    for chosen in rng.permutation(near)[:_DRAWS]:
+    # The next position lies in a shell of a tenth of the step to both sides; after 20 positions a
+    # step is given up as out of reach.
+    near = np.flatnonzero(np.abs(far - step) <= 0.1 * step)
+    for chosen in rng.permutation(near)[:20]:
         found = inverse_kinematics(
             chain,
             forward_kinematics(chain, workspace.joints[chosen]),
             rng,
             components=POSE if orientation else POSITION,
             guess=last,
-            starts=_STARTS,
+            starts=8,
         )
         if found.solved:
             return found.joints

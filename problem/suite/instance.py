@@ -8,10 +8,10 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from ..cases import SUITE_PREFIX, Case, load_case
-from ..printed import Described
+from ..printed import Strict
 from ..problem import Problem
 
 Seconds = Annotated[float, Field(ge=0)]
@@ -33,11 +33,7 @@ class BoundEvidence(StrEnum):
     """The lower bound is proved; the upper one is proved too far from it, or checked only."""
 
 
-class _Strict(Described):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Hardness(_Strict):
+class Hardness(Strict):
     """How hard an instance is to solve."""
 
     starts: Count
@@ -58,7 +54,7 @@ class Hardness(_Strict):
     """Number of evaluations of each run."""
 
 
-class BenchmarkInstance(_Strict):
+class BenchmarkInstance(Strict):
     """A row of the suite's table.
 
     Times are in s. ``lower`` is rounded down and ``upper`` up, at twelve digits.

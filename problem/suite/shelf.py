@@ -6,20 +6,13 @@ from fnmatch import fnmatchcase
 from functools import lru_cache
 from importlib.resources import files
 
-from pydantic import BaseModel, ConfigDict
-
 from ..cases import SUITE_PREFIX, Case
 from ..errors import TrajgapError
-from ..printed import spelt_like
+from ..printed import Strict, spelt_like
 from .instance import BenchmarkInstance
 
-_TABLE = "suite.json"
-"""The committed table: written by benchmarks/make_suite.py, never by hand."""
 
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
+class _Table(Strict):
     format: str
     version: str
     instances: tuple[BenchmarkInstance, ...]
@@ -27,7 +20,8 @@ class _Table(BaseModel):
 
 @lru_cache(maxsize=1)
 def _table() -> _Table:
-    text = files(__package__ or "").joinpath(_TABLE).read_text(encoding="utf-8")
+    """The committed table: written by benchmarks/make_suite.py, never by hand."""
+    text = files(__package__ or "").joinpath("suite.json").read_text(encoding="utf-8")
     return _Table.model_validate_json(text)
 
 

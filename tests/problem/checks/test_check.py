@@ -30,7 +30,6 @@ from trajgap.problem import (
 )
 from trajgap.problem.checks import checker
 from trajgap.problem.checks.jumps import jumps_of
-from trajgap.problem.checks.uneven_peaks import uneven_peaks
 from trajgap.problem.curves import Trajectory
 
 
@@ -72,7 +71,7 @@ def test_the_error_of_a_peak_covers_all_other_extrema(segments: int) -> None:
     size = np.array([[max(abs(e.value) for e in points[r, j]) for j in (0, 1)] for r in range(4)])
     for _ in range(6):
         error = size * rng.uniform(0.0, 1.0, (segments, 4, 2)) ** 4
-        uneven = iter(uneven_peaks(limits, motion, error))
+        uneven = iter(checker._derivative_peaks(problem, h, motion, error))
         for j, r in itertools.product((0, 1), (1, 2, 3)):
             ends = [(e.value, float(error[e.segment, r, j])) for e in points[r, j]]
             ratios = [
@@ -81,7 +80,7 @@ def test_the_error_of_a_peak_covers_all_other_extrema(segments: int) -> None:
                 for v, e in ends
             ]
             peak = next(uneven)
-            assert peak.ratio + peak.error / peak.size >= max(ratios) - 1e-12
+            assert peak.ratio + peak.error / peak.limit >= max(ratios) - 1e-12
         for peak in checker._position_peaks(problem, h, motion, error):
             j, sign = problem.joints.index(str(peak.joint)), np.sign(peak.limit)
             reach = max(sign * e.value + float(error[e.segment, 0, j]) for e in points[0, j])
