@@ -24,6 +24,7 @@ from .card_errors import plainly
 from .card_limits import limits_line
 from .card_optimum import on_doubted_points, optimum_line
 from .digit_ranges import implausible
+from .roots import AGAINST
 from .study import Study
 
 
@@ -95,16 +96,12 @@ def verdict_card(
     )
 
 
-_AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-"""Words that are against a claim under every reading."""
-
-
 def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
     """Whether a cause that is no error speaks against its claim, as every reading does."""
     own, head = words.get(cause.claim or ""), cause.head
-    against = head is not None and head.verdict in _AGAINST
+    against = head is not None and head.verdict in AGAINST
     warns = cause.severity is Severity.WARNING
-    return warns and against and own is not None and own.verdict in _AGAINST
+    return warns and against and own is not None and own.verdict in AGAINST
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
@@ -138,7 +135,7 @@ def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]
 def _explanation(causes: Sequence[Cause], room: int) -> str | None:
     """The most charitable explanation of the gravest cause that has one, if there is room."""
     for cause in causes:
-        for explanation in [e for e in cause.explanations if e.settles][:1]:
+        for explanation in cause.explanations[:1]:
             plain = explanation.change
             called = f"A possible explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.

@@ -27,6 +27,7 @@ from ..documents import (
     said_beside,
 )
 from .printed_row import rows_under
+from .roots import AGAINST
 from .stated import RowClaim
 from .study import Study
 
@@ -243,10 +244,9 @@ def _through_points(finding: Finding) -> bool:
 
 def _without_points(judgement: Judgement, own: list[Finding]) -> bool:
     """Whether what needs no way-points is against a claim under every reading by itself."""
-    against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
     said = [f for f in own if f.verdict == judgement.verdict and not _through_points(f)]
     every = all(any(f.reading in (None, r) for f in said) for r in judgement.readings)
-    return judgement.verdict in against and every
+    return judgement.verdict in AGAINST and every
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

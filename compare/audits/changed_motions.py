@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Limits, Printed, Problem, Quantity, evaluate
 from ...problem.cases import AnyClaim, Claim, PeakClaim, Statement, motions_of
-from ..documents import Explanation, Finding
+from ..documents import Finding
 from .printed_row import PrintedRow
 from .rules import box_reach, largest
 from .slips import (
@@ -27,67 +27,51 @@ from .slips import (
 )
 from .stated import RowClaim
 
-
-@dataclass(frozen=True, eq=False)
-class _Tried:
-    """Changes of one kind, with the peaks of the motions that they lead to.
-
-    ``peaks`` and ``limits`` have the shape (changes, joints, 3).
-    """
-
-    slips: Sequence[Slip]
-    peaks: Array
-    limits: Array
-
-    def ratios(self) -> Array:
-        """Largest ratio to a limit of each motion."""
-        with np.errstate(invalid="ignore", divide="ignore"):
-            found = np.nan_to_num(self.peaks / self.limits, nan=0.0)
-        most: Array = found.max(axis=(1, 2), initial=0.0)
-        return most
+_Tried = tuple[Sequence[Slip], Array, Array]
+"""Changes of one kind; the peaks of the motions that they lead to, and the limits, both of the
+shape (changes, joints, 3)."""
 
 
 def changes_of_motion(
     row: PrintedRow[RowClaim], finding: Finding, claim: AnyClaim
-) -> tuple[list[tuple[Slip, bool]], Explanation | None]:
+) -> list[tuple[Slip, bool]]:
     """Changes that may settle what is said of a motion, and whether they reach a limit.
 
-    The likeliest first; and what only brings the motion nearer to its limits.
+    The likeliest first.
     """
-    problem = row.posed()
-    found = row.check
-    if found.worst is None or found.worst.quantity in ("curve", "duration"):
-        return [], None
+    problem, worst = row.posed(), row.check.worst
+    if worst is None or worst.quantity in ("curve", "duration"):
+        return []
     if problem.limits.uneven or problem.curve.free:
-        return [], None
-    h = row.durations.value
-    printed = _peaks(problem, h[None])
-    sizes = problem.limits.derivatives
-    own = _Tried((), printed, sizes[None])
-    every = list(_changes(row, finding, printed[0]))
-    before = float(own.ratios()[0])
+        return []
+    printed = _peaks(problem, row.durations.value[None])
+    before = float(_ratios(printed, problem.limits.derivatives).max())
     ranked: list[tuple[tuple[int, bool, int, float], Slip]] = []
-    best: tuple[float, Slip] | None = None
     room = _room(row)
     least = max(1 + room, before if finding.rule != "TG201" else 0.0)
     off = int(_offs(row, problem, printed, room)[0])
     # Of a peak that does not fit, only what makes it fit is an explanation.
     most = off - 1 if isinstance(claim, PeakClaim) else off
-    for tried in every:
-        offs = _offs(row, problem, tried.peaks, room)
-        for slip, ratio, far in zip(tried.slips, tried.ratios(), offs, strict=True):
+    for slips, peaks, sizes in _changes(row, finding, printed[0]):
+        offs = _offs(row, problem, peaks, room)
+        ratios = _ratios(peaks, sizes).max(axis=(1, 2))
+        for slip, ratio, far in zip(slips, ratios, offs, strict=True):
             away = bool(ratio < 1 - room)
-            # 1.5: factor by which a number may change where no other printed number speaks for the
-            # change: a leading digit could always make a duration long enough, and such a change
-            # explains nothing.
+            # A leading digit could always make a duration long enough, so a change by more than
+            # half that no other printed number speaks for explains nothing.
             telling = far < off or not away or slip.share <= 1.5
             if ratio <= least and far <= most and telling and not _breaks_sum(row.claim, slip):
                 ranked.append(((int(far), away, slip.slips, slip.share), slip))
-            elif slip.share == 1.0 and (best is None or ratio < best[0]):
-                best = float(ratio), slip
     ranked += _other_values(row, claim, problem, printed[0], room)
     ranked.sort(key=lambda one: one[0])
-    return [(slip, not key[1]) for key, slip in ranked], _nearer(finding, before, best)
+    return [(slip, not key[1]) for key, slip in ranked]
+
+
+def _ratios(peaks: Array, limits: Array) -> Array:
+    """Ratios of peaks to limits; 0 where both are 0."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found: Array = np.nan_to_num(peaks / limits, nan=0.0)
+    return found
 
 
 def _room(row: PrintedRow[Claim]) -> float:
@@ -104,9 +88,8 @@ def _other_values(
     if not isinstance(claim, PeakClaim):
         return
     order = QUANTITIES.index(claim.derivative)
-    case = row.study.case
-    labels = case.robot.joints if claim.values else (claim.joint,)
-    for label, spot in zip(labels, values(case, claim), strict=True):
+    spots = values(row.study.case, claim)
+    for (label, _), spot in zip(row.study.printed_numbers(claim), spots, strict=True):
         if label is not None and label not in problem.joints:
             continue
         joints = slice(None) if label is None else problem.joints.index(label)
@@ -151,25 +134,11 @@ def _edited(row: RowClaim, slip: Slip) -> list[Printed]:
     return found
 
 
-def _nearer(finding: Finding, before: float, best: tuple[float, Slip] | None) -> Explanation | None:
-    """An exchange or a turn that brings a motion nearer to its limits, and not within them."""
-    # 0.9: share of the excess that a change must leave at most to be called an improvement.
-    if finding.rule != "TG201" or best is None or best[0] - 1 > 0.9 * (before - 1):
-        return None
-    return Explanation(
-        change=best[1].change,
-        effect=f"Then the largest ratio to a limit falls from {before:.4g} to {best[0]:.4g}, and a "
-        "limit is still broken.",
-        settles=False,
-    )
-
-
 def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Iterator[_Tried]:
     """Other durations, way-points and limits, with the peaks that follow."""
     case, problem = row.study.case, row.posed()
-    statement = row.statement
+    statement, sizes = row.statement, problem.limits.derivatives
     h = row.durations.value
-    sizes = problem.limits.derivatives
     spots = durations(case, row.claim)
     slips = [*exchanges(spots), *of_rows(case, row.claim)]
     slips += [s for spot in spots for s in misprints(spot)]
@@ -177,9 +146,8 @@ def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Ite
         [[statement.si(n, "time").value for n in _edited(row.claim, slip)] for slip in slips]
     )
     if slips:
-        yield _Tried(slips, _peaks(problem, times.reshape(-1, h.size)), sizes[None])
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = np.nan_to_num(printed / sizes, nan=0.0)
+        yield slips, _peaks(problem, times.reshape(-1, h.size)), sizes[None]
+    ratios = _ratios(printed, sizes)
     # A way-point moves its joint alone, so no other joint may be beyond a limit already.
     beyond = ratios.max(axis=1) > 1.0
     for j in np.flatnonzero(beyond if finding.rule == "TG201" else np.ones_like(beyond)):
@@ -198,7 +166,7 @@ def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Ite
             columns[k, paths.index(path)] += _step(statement, spots, path, number, at)
         if slips:
             peaks[:, j] = _peaks_through(problem.joint(int(j)), columns, h)
-            yield _Tried(slips, peaks, sizes[None])
+            yield slips, peaks, sizes[None]
         for r in np.flatnonzero(ratios[j] > 1.0):
             yield from _other_limits(row, problem, printed, int(j), int(r))
 
@@ -229,7 +197,7 @@ def _other_limits(
             slips.append(slip)
             sizes.append(size)
     if slips:
-        yield _Tried(slips, np.tile(printed, (len(slips), 1, 1)), np.array(sizes))
+        yield slips, np.tile(printed, (len(slips), 1, 1)), np.array(sizes)
 
 
 def _peaks(problem: Problem, times: Array) -> Array:
@@ -251,8 +219,7 @@ def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -
         if not isinstance(claim, PeakClaim) or row.claim not in motions_of(case.claims, claim):
             continue
         order = QUANTITIES.index(claim.derivative)
-        labels = case.robot.joints if claim.values else (claim.joint,) * len(claim.printed)
-        for label, number in zip(labels, claim.printed, strict=True):
+        for label, number in row.study.printed_numbers(claim):
             if label is not None and label not in problem.joints:
                 continue
             own = peaks[:, :, order]

@@ -21,10 +21,6 @@ _FIXES = {
     "TG601": "Compare joint angles and positions with your model of the robot.",
 }
 """How to fix what a rule finds, where no number mends it."""
-_UNKNOWN = "Compare the numbers with those of your program, and correct the text."
-"""How to fix what no rule and no number mends."""
-_FOLLOWS = "Rests on numbers that change above."
-"""What is found of a number that is wrong only once others are corrected."""
 
 
 def advise(
@@ -64,37 +60,43 @@ def advise(
         if judgement.verdict is ClaimVerdict.DEPENDS:
             found.append(_of_readings(study, claim, judgement, taken(claim.id)))
         elif judgement.verdict is ClaimVerdict.NOT_CHECKABLE:
-            found.append(
-                Advice(
-                    urgency=Urgency.OPEN,
-                    where=claim.where,
-                    claim=claim.id,
-                    says=f"Readers cannot check this: {judgement.why}",
-                    change="Print what is missing, or drop the claim.",
-                    edits=(),
-                )
-            )
+            says = f"Readers cannot check this: {judgement.why}"
+            change = "Print what is missing, or drop the claim."
+            found.append(_advice(Urgency.OPEN, claim, says, change))
     found += _following(study, left)
     found += _left_open(study)
     return tuple(sorted(found, key=lambda one: list(Urgency).index(one.urgency)))
 
 
+def _advice(
+    urgency: Urgency,
+    about: AnyClaim | None,
+    says: str,
+    change: str,
+    edits: tuple[Edit, ...] = (),
+    where: str = "the whole draft",
+) -> Advice:
+    """Advice on a claim, or on what stands somewhere else."""
+    return Advice(
+        urgency=urgency,
+        where=where if about is None else about.where,
+        claim=None if about is None else about.id,
+        says=says,
+        change=change,
+        edits=edits,
+    )
+
+
 def _of_cause(study: Study, cause: Cause, edits: tuple[Edit, ...]) -> Advice:
     claim = study.case.claim(cause.claim) if cause.claim else None
-    where = claim.where if claim is not None else "the whole draft"
     rule = "" if cause.head is None else cause.head.rule
     mended = any(one.key != CLAIM for one in edits)
     fix = "" if mended else _FIXES.get(rule, "")
     change = " ".join(one for one in (fix, _told(study, claim, edits)) if one)
+    unknown = "Compare the numbers with those of your program, and correct the text."
     against = cause.severity is Severity.ERROR
-    return Advice(
-        urgency=Urgency.CONTRADICTED if against else Urgency.DOUBTFUL,
-        where=where,
-        claim=cause.claim,
-        says=" ".join(plainly(study.case, cause)),
-        change=change or _UNKNOWN,
-        edits=edits,
-    )
+    urgency = Urgency.CONTRADICTED if against else Urgency.DOUBTFUL
+    return _advice(urgency, claim, " ".join(plainly(study.case, cause)), change or unknown, edits)
 
 
 def _following(study: Study, edits: Sequence[Edit]) -> Iterator[Advice]:
@@ -102,14 +104,8 @@ def _following(study: Study, edits: Sequence[Edit]) -> Iterator[Advice]:
     for claim in study.case.claims:
         own = tuple(one for one in edits if one.claim == claim.id)
         if own:
-            yield Advice(
-                urgency=Urgency.FOLLOWS,
-                where=claim.where,
-                claim=claim.id,
-                says=_FOLLOWS,
-                change=_told(study, claim, own),
-                edits=own,
-            )
+            says = "Rests on numbers that change above."
+            yield _advice(Urgency.FOLLOWS, claim, says, _told(study, claim, own), own)
 
 
 # --- sentences ------------------------------------------------------------------------------------
@@ -180,15 +176,14 @@ def _of_readings(
     for rid, word in judgement.readings.items():
         groups.setdefault(word, []).append(whys.get(rid, rid))
     parts = [f"{word} if {_some(names)}" for word, names in groups.items()]
-    return Advice(
-        urgency=Urgency.DOUBTFUL,
-        where=claim.where,
-        claim=claim.id,
-        says=f"Your text can be read in {len(judgement.readings)} ways, and this is "
-        f"{'; '.join(parts)}.",
-        change="State in the text which is meant: units, curve, knots and ends."
-        + (f" {_told(study, claim, edits)}" if edits else ""),
-        edits=edits,
+    ways = f"{len(judgement.readings)} ways, and this is {'; '.join(parts)}"
+    told = f" {_told(study, claim, edits)}" if edits else ""
+    return _advice(
+        Urgency.DOUBTFUL,
+        claim,
+        f"Your text can be read in {ways}.",
+        f"State in the text which is meant: units, curve, knots and ends.{told}",
+        edits,
     )
 
 
@@ -201,21 +196,11 @@ def _some(names: Sequence[str]) -> str:
 def _left_open(study: Study) -> Iterator[Advice]:
     """What the case file lists as open: assumptions, and settings of algorithms."""
     for assumption in study.case.assumptions:
-        yield Advice(
-            urgency=Urgency.OPEN,
-            where="the text",
-            claim=None,
-            says=f"Left open: {assumption.text}",
-            change=f"Say which holds. Assumed here: {assumption.choice}",
-            edits=(),
-        )
+        says = f"Left open: {assumption.text}"
+        change = f"Say which holds. Assumed here: {assumption.choice}"
+        yield _advice(Urgency.OPEN, None, says, change, where="the text")
     for block in study.case.algorithms:
         for line in block.open:
-            yield Advice(
-                urgency=Urgency.OPEN,
-                where=block.where or block.name,
-                claim=None,
-                says=f"Left open for {block.name}: {line}",
-                change="Print this choice, so others can rerun the algorithm.",
-                edits=(),
-            )
+            says = f"Left open for {block.name}: {line}"
+            change = "Print this choice, so others can rerun the algorithm."
+            yield _advice(Urgency.OPEN, None, says, change, where=block.where or block.name)

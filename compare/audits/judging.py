@@ -23,6 +23,7 @@ from ..documents import (
     grouped,
     with_readings,
 )
+from .roots import AGAINST
 
 _RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED)
 """The weakest reference last: a verdict rests on the weakest of what stands behind it."""
@@ -149,7 +150,7 @@ def _confidence(behind: Iterable[Finding], verdict: ClaimVerdict) -> Confidence 
     reading, rests on all of them.
     """
     known = [f.confidence for f in behind if isinstance(f.confidence, Confidence)]
-    one = verdict in (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+    one = verdict in AGAINST
     order = list(Confidence).index
     return (min if one else max)(known, key=order, default=UNDECIDED)
 
@@ -171,11 +172,10 @@ def weigh(
     admissible : sequence of str
         Every reading of the case.
     """
-    against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
     refuted = {
         j.claim
         for j in judgements
-        if set(j.readings) == set(admissible) and all(v in against for v in j.readings.values())
+        if set(j.readings) == set(admissible) and all(v in AGAINST for v in j.readings.values())
     }
     return tuple(
         f.model_copy(update={"severity": Severity.WARNING})

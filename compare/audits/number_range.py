@@ -9,7 +9,7 @@ import numpy as np
 
 from ...problem import Array
 from .profile_motions import ProfileMotion
-from .rounding import ROUNDING, meet
+from .rounding import ROUNDING, Ends, meet
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class NumberRange:
         jump = _jump(found, number, gradual)
         return cls(plain, np.sort([*(value for value, _ in found), *(jump or ())]), jump)
 
-    def meets(self, lower: float, upper: float) -> bool:
+    def meets(self, printed: Ends) -> bool:
         """Whether a printed interval holds a value, each side of a jump by itself."""
         parts = [self.others]
         if self.jump is not None:
@@ -57,13 +57,13 @@ class NumberRange:
         for part in parts:
             # As much again, because corners need not be the extremes of a curved function.
             width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
-            if meet((lower, upper), (part[0] - width, part[-1] + width)):
+            if meet(printed, (part[0] - width, part[-1] + width)):
                 return True
         return False
 
-    def spans(self, lower: float, upper: float) -> bool:
+    def spans(self, printed: Ends) -> bool:
         """Whether a printed interval lies among the values, where they jump over it."""
-        return meet((lower, upper), (self.others[0], self.others[-1]))
+        return meet(printed, (self.others[0], self.others[-1]))
 
 
 def _jump(

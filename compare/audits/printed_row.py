@@ -115,6 +115,12 @@ class PrintedRow(Generic[C]):
         unit, _ = self._unit(quantity, joint)
         return value if unit is None else from_si(value, unit)
 
+    def shown(
+        self, quantity: str, value: float, joint: str | None = None, form: str = ".6g"
+    ) -> str:
+        """The same as a sentence writes it, with its unit."""
+        return f"{self.in_units(quantity, value, joint):{form}} {self.unit(quantity, joint)}"
+
     def time(self, number: Printed) -> Measured:
         """A printed time of the claim, s, with the interval that rounds to its digits."""
         return self.study.case.measured(number, "time", self.claim.problem, self.reading)

@@ -96,14 +96,15 @@ class _Draft:
     def put(self, claim: str | None, key: str, digits: Sequence[str], trigger: str | None) -> None:
         """Change one thing that stands in the edited draft."""
         case = self.original.case
-        if claim is None:
-            stands = tuple(one.id for one in case.readings)
-        else:
-            stands = printed_under(case.claim(claim), key)
+        readings = tuple(one.id for one in case.readings)
+        stands = readings if claim is None else printed_under(case.claim(claim), key)
         old = self.edits.get((claim, key))
-        trigger = trigger if old is None else old.trigger
         self.edits[claim, key] = Edit(
-            claim=claim, key=key, printed=stands, becomes=tuple(digits), trigger=trigger
+            claim=claim,
+            key=key,
+            printed=stands,
+            becomes=tuple(digits),
+            trigger=trigger if old is None else old.trigger,
         )
         self._study = None
 
@@ -149,10 +150,11 @@ def _mend(draft: _Draft, claim: AnyClaim, rules: set[str], tried: Counter[str]) 
     if READINGS in rules and not tried[claim.id] and len(draft.case.readings) > 1:
         draft.put(None, READINGS, (draft.study.main_reading,), claim.id)
         return
+    about_times, first = bool(rules & {*_LIMITS}), not tried[claim.id]
     if isinstance(claim, StatementClaim):
         about = [draft.case.claim(one) for one in claim.of]
         mended = False
-        if claim.checks == "optimal" and not tried[claim.id]:
+        if claim.checks == "optimal" and first:
             done = [_shorten(draft, one, claim.id) for one in about]
             mended = all(done)
         elif claim.checks == "within_limits" and tried[claim.id] < 2:
@@ -161,15 +163,15 @@ def _mend(draft: _Draft, claim: AnyClaim, rules: set[str], tried: Counter[str]) 
         if not mended:
             draft.put(claim.id, CLAIM, (), claim.id)
     elif isinstance(claim, RowClaim):
-        if rules & {*_LIMITS}:
+        if about_times:
             _lengthen(draft, claim, claim.id)
         if rules - {*_LIMITS}:
             _renew(draft, claim, claim.id)
     elif isinstance(claim, TotalTimeClaim):
         other = repeated_total(draft.study, claim)
-        if other is not None and not (rules & {*_LIMITS} and tried[claim.id]):
+        if other is not None and (first or not about_times):
             _repeat(draft, claim, other, claim.id)
-        elif rules & {*_LIMITS}:
+        elif about_times:
             _shorten(draft, claim, claim.id)
     elif isinstance(claim, _Numbers) and (
         tried[claim.id] > 1 or not _renew(draft, claim, claim.id)

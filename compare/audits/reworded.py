@@ -6,7 +6,7 @@ import pickle
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import islice
-from typing import Any
+from typing import Any, cast
 
 from ...nlp import PerJointSolution, Solution, printed_problem_or_none
 from ...problem import Case, Printed
@@ -95,39 +95,34 @@ class Reworded(Study):
 
     def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
         """The original's, where it is the same question."""
-        if self._alike(pair):
-            return self.original.optimum(pair, joint)
-        return super().optimum(pair, joint)
+        return self._asked(self._alike(pair)).optimum(pair, joint)
 
     def per_joint(self, pair: Pair) -> PerJointSolution:
         """The original's, where it is the same question to the same digits."""
         same = self._alike(pair) and self.half_digits(pair) == self.original.half_digits(pair)
-        return self.original.per_joint(pair) if same else super().per_joint(pair)
+        return self._asked(same).per_joint(pair)
 
     def relaxed(self, pair: Pair) -> Solution:
         """The original's, where it is the same question."""
-        same = self._alike(pair)
-        return self.original.relaxed(pair) if same else super().relaxed(pair)
+        return self._asked(self._alike(pair)).relaxed(pair)
 
     def runs(self, algorithm_id: str, pair: Pair) -> Replays:
         """The original's, where the same algorithms search for the same."""
-        same = self._replays_alike(pair)
-        return self.original.runs(algorithm_id, pair) if same else super().runs(algorithm_id, pair)
+        return self._asked(self._replays_alike(pair)).runs(algorithm_id, pair)
 
     def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
         """The original's, where the same algorithms search for the same."""
-        same = self._replays_alike(pair)
-        return (
-            self.original.spread_runs(algorithm_id, pair)
-            if same
-            else super().spread_runs(algorithm_id, pair)
-        )
+        return self._asked(self._replays_alike(pair)).spread_runs(algorithm_id, pair)
 
     @property
     def drawing(self) -> Study:
         """The original, where all problems and algorithms are the same."""
         same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
         return self.original if same else self
+
+    def _asked(self, same: bool) -> Study:
+        """Who answers: the original what it answers alike, else this study as any other."""
+        return self.original if same else cast(Study, super())
 
     def _alike(self, pair: Pair) -> bool:
         """Whether the changed case poses the very same problem, digit by digit."""
@@ -141,9 +136,7 @@ class Reworded(Study):
         return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
 
     def _replays_alike(self, *pairs: Pair) -> bool:
-        mine, theirs = (_replayed(s.case) for s in (self, self.original))
+        mine, theirs = (
+            (s.case.algorithms, s.case.document.families) for s in (self, self.original)
+        )
         return mine == theirs and all(self._alike(pair) for pair in pairs)
-
-
-def _replayed(case: Case) -> tuple[Any, ...]:
-    return case.algorithms, case.document.families

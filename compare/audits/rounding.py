@@ -118,7 +118,7 @@ class RoundingBox:
             raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
 
     @classmethod
-    def of(cls, numbers: Iterable[Measured]) -> RoundingBox:
+    def of(cls, numbers: Iterable[Measured | Printed]) -> RoundingBox:
         """Box of printed numbers, shape (numbers,)."""
         ends = zip(*((one.value, one.lower, one.upper) for one in numbers), strict=True)
         return cls(*map(np.array, ends))

@@ -36,7 +36,7 @@ from ..printed_row import PrintedRow, rows_under
 from ..rounding import FEW_ROUNDINGS
 from ..stated import DERIVATIVES
 from ..study import Study
-from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
+from .peaks import jumps_shown, largest
 
 _FILLED = 0.1
 """Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:
@@ -158,11 +158,7 @@ def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:
     jumps = [(row, jump) for row in motions for jump in row.check.jumps if jump.order == order]
     if not jumps:
         return Speaks.FOR, f"{clue.quantity} does not jump"
-    shown = " and ".join(
-        f"{abs(jump_size(row, jump)):.3g} {jump_unit(row, jump)}"
-        for row, jump in largest_of_each_kind(jumps)
-    )
-    plural = "s" if len(jumps) > 1 else ""
+    shown, plural = " and ".join(jumps_shown(jumps, ".3g")), "s" if len(jumps) > 1 else ""
     return (Speaks.AGAINST, f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown}")
 
 

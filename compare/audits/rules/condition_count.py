@@ -233,8 +233,7 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
         quantity = QUANTITIES[order - 1]
         tops = [abs(top.value) for top in largest(row, order)]
         ends = np.abs(trajectory(np.array([0.0, trajectory.total_time]), order))
-        # 0.01: share of a derivative's peak up to which its value at an end counts as 0: rounding
-        # of the printed digits moves it by less.
+        # A hundredth of the peak counts as 0: rounding of the printed digits moves it by less.
         over = np.where(ends > 0.01 * np.array(tops), ends, 0.0)
         if not over.any():
             continue
@@ -245,9 +244,6 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
                 continue
             end, joint = np.unravel_index(int(np.argmax(own)), own.shape)
             label = problem.joints[int(joint)]
-            value = row.in_units(quantity, float(own[end, joint]), label)
+            value = row.shown(quantity, float(own[end, joint]), label, ".4g")
             where = "starts" if end == 0 else "ends"
-            yield (
-                f"joint {label} {where} with a {quantity} of {value:.4g} "
-                f"{row.unit(quantity, label)}"
-            )
+            yield f"joint {label} {where} with a {quantity} of {value}"

@@ -17,7 +17,7 @@ from ..stated import DERIVATIVES, RowClaim, all_called, called_under
 from ..study import Study
 from .judged_rows import broken, judged_row, ratio_at_print
 from .linear_blends import judge_row
-from .peaks import box_reach, jump_size, jump_unit, largest, largest_of_each_kind
+from .peaks import box_reach, jump_shown, jumps_shown, largest, largest_of_each_kind
 from .rule_group import INFORMS, Explained, finding, rule_group
 
 _ELSEWHERE = "elsewhere"
@@ -117,12 +117,10 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """Name a motion that jumps under a reading; no word of the paper is judged by that."""
     for row in printed_rows(study, claim):
-        found = row.check.jumps
-        velocity = [jump for jump in found if jump.order == 1]
+        velocity = [(row, jump) for jump in row.check.jumps if jump.order == 1]
         if not velocity:
             continue
-        tops = largest_of_each_kind([(row, jump) for jump in velocity])
-        sizes = [f"{abs(jump_size(row, top)):.6g} {jump_unit(row, top)}" for _, top in tops]
+        tops, sizes = largest_of_each_kind(velocity), jumps_shown(velocity)
         most = " and ".join(
             f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
@@ -229,7 +227,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         elif jumps:
             largest_ones = " and ".join(
                 f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
-                f"{jump_size(row, top):.6g} {jump_unit(row, top)}"
+                f"{jump_shown(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind, more = ClaimVerdict.INCONSISTENT, "jumps", ""
@@ -275,7 +273,7 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
             most = " and ".join(
-                f"at t = {top.time:.6g} s by {jump_size(row, top):.6g} {jump_unit(row, top)}"
+                f"at t = {top.time:.6g} s by {jump_shown(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind = ClaimVerdict.SUPPORTED, "jumps"
@@ -311,12 +309,12 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 # limit reached.
                 if abs(abs(top.value) - limit) <= reach <= 0.01 * limit:
                     label = problem.joints[top.joint]
-                    value, around, bound = (
-                        row.in_units(quantity, x, label) for x in (abs(top.value), reach, limit)
+                    value, around = (
+                        row.in_units(quantity, x, label) for x in (abs(top.value), reach)
                     )
                     tight.append(
                         f"joint {label} {quantity} {value:.6g} ± {around:.1g} "
-                        f"at its limit {bound:.6g} {row.unit(quantity, label)}"
+                        f"at its limit {row.shown(quantity, limit, label)}"
                     )
         if tight:
             yield row.finding(

@@ -25,19 +25,12 @@ from ...documents import (
 )
 from ...gaps import gap, reference_of
 from ..digit_ranges import below_certified
-from ..fixed_ratios import (
-    BELOW_AT_RATIOS,
-    at_ratios,
-    of_other_ratios,
-    off_ratios,
-    optimum_called,
-    planned_apart,
-)
+from ..fixed_ratios import at_ratios, off_ratios, optimum_called, planned_apart
 from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS, OPTIMAL
 from ..rounding import meet
 from ..stated import RowClaim, called, called_under, other_objective
-from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
+from ..stated_totals import contradicting_lows, rounded_up_low, total_excludes
 from ..study import Study, Total
 from .judged_rows import broken
 from .rule_group import INFORMS, Explained, finding, rule_group
@@ -92,7 +85,16 @@ def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     reference = reference_of(solution)
     other = off_ratios(row)
     if other is not None:
-        yield of_other_ratios(row, total.shown, other)
+        yield row.finding(
+            "TG302",
+            "other ratios",
+            f"Printed are {other}.",
+            "They answer a question other than the shortest total at these ratios, and are not "
+            "compared with it.",
+            basis=Basis.DIGITS,
+            printed=total.shown,
+            decides=False,
+        )
         return
     if reference is not None:
         yield _distance(row, total, reference, procedure)
@@ -171,7 +173,10 @@ def _below(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> str | No
     if loose := row.statement.declaration.loose:
         return f"{loose} are rounded numbers, which may explain it."
     if solution.problem.ratios is not None:
-        return BELOW_AT_RATIOS
+        return (
+            "The whole printed interval lies below it; other ratios of the durations, other "
+            "limits, another reading or other digits may explain that."
+        )
     share = _spread(row)
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
@@ -304,7 +309,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     inside = rounded_up_low(row, interval) <= solution.best <= interval[1]
     if inside and not total_excludes(row, solution.best):
         sides.agreeing.append(name)
-        sides.summed += is_sum(claim)
+        sides.summed += isinstance(claim, RowClaim) and claim.total is None
         sides.rounded_up |= not interval[0] <= solution.best
         return
     distance = gap(interval, _reference(solution), feasible=False)
@@ -377,7 +382,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
             rounded = " if digits were rounded up to keep the limits" if sides.rounded_up else ""
             which = " or the ".join(sorted(called_so))
-            whose = what_agrees(len(sides.agreeing), sides.summed)
+            whose = _what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]
         yield finding(
             "TG302",
@@ -393,6 +398,17 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
         )
+
+
+def _what_agrees(count: int, sums: int) -> str:
+    """What agrees, up to the reference: printed totals, or sums of durations."""
+    if not sums:
+        return "Every printed total agrees with"
+    if sums < count:
+        whose = "Every printed total, or the sum of the printed durations if none is printed,"
+        return f"{whose} agrees with"
+    which = "the printed durations" if count == 1 else "the durations of each row"
+    return f"The sum of {which} agrees with"
 
 
 def _shorter(row: PrintedRow[AnyClaim], total: Total) -> tuple[str, Gap] | None:

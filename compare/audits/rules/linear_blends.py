@@ -156,12 +156,12 @@ def _judged(row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends) 
     keeps = False
     with suppress(CaseError):  # the tightest ranges may be empty
         tight = row.posed(Digits.TIGHTEST).limits.sides.min(axis=0)
-        keeps = (
+        keeps = bool(
             (wide.velocity.size.high <= tight[:, 0]).all()
             and (wide.acceleration.high <= tight[:, 1]).all()
             and (wide.room.low >= 0).all()
         )
-    return _Found(bool(breaks), bool(keeps), _worst(row, problem, plain))
+    return _Found(bool(breaks), keeps, _worst(row, problem, plain))
 
 
 def _blended(
@@ -207,13 +207,11 @@ def _worst(row: PrintedRow[Claim], problem: Problem, plain: Blended) -> str:
             joint = problem.joints[at[1]]
             if np.isinf(size[at]):
                 return f"the speed of joint {joint} jumps, for a blend printed as 0"
-            unit = row.unit(quantity, joint)
-            value = row.in_units(quantity, float(size[at]), joint)
-            limit = row.in_units(quantity, float(limits[at[1], order]), joint)
+            value = row.shown(quantity, float(size[at]), joint)
+            limit = row.shown(quantity, float(limits[at[1], order]), joint)
             best = (
                 float(ratio[at]),
-                f"the {quantity} of joint {joint} reaches {value:.6g} {unit}, "
-                f"limit {limit:.6g} {unit}",
+                f"the {quantity} of joint {joint} reaches {value}, limit {limit}",
             )
     return best[1]
 

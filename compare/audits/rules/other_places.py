@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from itertools import combinations
 from math import inf, isfinite, log
 
@@ -16,10 +15,7 @@ from ..study import Study
 from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
-from .rule_group import INFORMS, Explained, rule_group
-
-_informing = partial(Finding, rule="TG108", decides=False)
-"""Nothing here decides: a printer's slip is not a fault of the numbers."""
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 
 @rule_group(
@@ -32,7 +28,7 @@ _informing = partial(Finding, rule="TG108", decides=False)
     )
 )
 def judge_places(study: Study) -> Iterator[Finding]:
-    """Findings of TG108, which inform and decide nothing."""
+    """Findings of TG108. They decide nothing: a slip of the printer is no fault of the numbers."""
     for claim in study.claims:
         if isinstance(claim, PeakClaim):
             for motion in motions_of(study.case.claims, claim):
@@ -124,19 +120,18 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
         # 3: durations that two rows need in common before equal digits are worth a word.
         if len(texts[0]) < 3 or texts[0] != texts[1] or len(set(texts[0])) == 1:
             continue
-        if _named(first) == _named(second) or set(doubted(study, [first])) & set(
-            doubted(study, [second])
-        ):
+        tables = [set(doubted(study, [one])) for one in (first, second)]
+        if _named(first) == _named(second) or tables[0] & tables[1]:
             continue
-        yield _informing(
+        yield finding(
+            "TG108",
+            second,
+            "equal rows",
+            f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
+            "for different things.",
             basis=Basis.DIGITS,
-            claim=second.id,
+            decides=False,
             printed=", ".join(texts[1]),
-            kind="equal rows",
-            sentences=(
-                f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
-                "for different things.",
-            ),
         )
 
 

@@ -293,14 +293,15 @@ def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
     return list(found.values())
 
 
-def jump_size(row: PrintedRow[Claim], jump: Jump) -> float:
-    """Size of a jump in the unit of its joint."""
-    return row.in_units(DERIVATIVES[jump.order], jump.size, jump.joint)
+def jump_shown(row: PrintedRow[Claim], jump: Jump, form: str = ".6g") -> str:
+    """Size of a jump as a sentence writes it."""
+    return row.shown(DERIVATIVES[jump.order], jump.size, jump.joint, form)
 
 
-def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
-    """The unit of a jump, as a sentence writes it."""
-    return row.unit(DERIVATIVES[jump.order], jump.joint)
+def jumps_shown(jumps: Sequence[_Jump], form: str = ".6g") -> list[str]:
+    """Sizes of the largest jump of each kind of joints, without their signs."""
+    largest_ones = largest_of_each_kind(jumps)
+    return [jump_shown(row, jump, form).removeprefix("-") for row, jump in largest_ones]
 
 
 @rule_group(
@@ -363,10 +364,9 @@ def _above(row: PrintedRow[AnyClaim], peak: PeakClaim) -> list[str]:
         measured = row.measured(number, peak.derivative, label)
         least = measured.value - (measured.upper - measured.lower)
         if np.isfinite(limit) and least > limit * (1.0 + ROUNDING):
-            shown = row.in_units(peak.derivative, limit, label)
-            unit = row.unit(peak.derivative, label)
+            unit, shown = row.unit(peak.derivative, label), row.shown(peak.derivative, limit, label)
             found.append(
                 f"{number} {unit} for the {peak.derivative} of joint {label}, whose "
-                f"limit is at most {shown:.6g} {unit}, however its digits are read"
+                f"limit is at most {shown}, however its digits are read"
             )
     return found

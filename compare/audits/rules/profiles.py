@@ -57,6 +57,11 @@ _Profiled = TotalTimeClaim | PhasesClaim
 _Judge = Callable[["_Asked"], Finding]
 
 
+def total_time(motion: ProfileMotion) -> list[float]:
+    """The total of a motion, as numbers of it are given."""
+    return [motion.total_time]
+
+
 @dataclass(frozen=True)
 class _Asked:
     """A claim, and the row of the profile that it speaks of."""
@@ -89,6 +94,10 @@ class _Asked:
     ) -> NumberRange:
         """A number of the profile, or of another one; whether a motion changes it gradually."""
         return NumberRange.of(self.every(profile), number, gradual)
+
+    @property
+    def totals(self) -> NumberRange:
+        return self.range(total_time)
 
     @property
     def called(self) -> str:
@@ -201,21 +210,18 @@ def _impossible(asked: _Asked) -> Finding:
     turned = _Asked(other, PrintedRow(row.study, other, row.pair))
     said = ""
     if turned.every():
-        totals = turned.range(lambda motion: [motion.total_time])
-        number = row.time(claim.value)
-        if totals.meets(number.lower, number.cut_off().upper):
+        totals = turned.totals
+        if totals.meets(_ends(row.time(claim.value))):
             said = f" With {text} {unit} it takes {totals.plain:.6g} s, which fits."
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT,
         "no profile",
+        f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, at the "
+        "printed numbers or at the ends of what their digits leave: a phase would take less than "
+        f"0 s.{said}",
         printed=f"{claim.value} {row.study.time_unit}",
         computed="no profile",
-        sentences=(
-            f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, at "
-            "the printed numbers or at the ends of what their digits leave: a phase would take "
-            f"less than 0 s.{said}",
-        ),
     )
 
 
@@ -232,11 +238,8 @@ def _total_beside(asked: _Asked) -> Finding:
         how = f"from rest to rest, {_PATHS[straight]},"
         plain, fits = _fitted(asked, number, straight)
         if plain == 0.0 < number.value:
-            verdict, kind, said = (
-                ClaimVerdict.NOT_CHECKABLE,
-                "at rest",
-                "cannot be compared, because no joint moves",
-            )
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "at rest"
+            said = "cannot be compared, because no joint moves"
         elif plain == inf:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
             said = "cannot be compared, because a joint with limit 0 moves"
@@ -245,10 +248,10 @@ def _total_beside(asked: _Asked) -> Finding:
             said = 'fits if the joints stay on a straight line: add path = "straight" if they do'
     else:
         how = asked.between
-        totals = asked.range(lambda motion: [motion.total_time])
-        plain, fits = totals.plain, totals.meets(number.lower, number.cut_off().upper)
+        totals = asked.totals
+        plain, fits = totals.plain, totals.meets(_ends(number))
         notes = _notes(asked, totals)
-        if not fits and totals.spans(number.lower, number.cut_off().upper):
+        if not fits and totals.spans(_ends(number)):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
             said = "lies within its jump"
     if verdict is ClaimVerdict.SUPPORTED and not fits:
@@ -259,29 +262,24 @@ def _total_beside(asked: _Asked) -> Finding:
         asked,
         verdict,
         kind,
-        enclosed,
+        f"The {asked.called} {how} takes {plain:.6g} s; the printed {claim.value} {unit} {said}.",
+        *notes,
+        # Of all that rounds to the digits: enclosed, or tried at their ends.
+        basis=Basis.CHECK if enclosed else Basis.COMPUTED,
         printed=f"{claim.value} {unit}",
         computed=f"{plain:.6g} s",
-        sentences=(
-            f"The {asked.called} {how} takes {plain:.6g} s; the printed {claim.value} {unit} "
-            f"{said}.",
-            *notes,
-        ),
     )
 
 
-def _found(
-    asked: _Asked, verdict: ClaimVerdict, kind: str, enclosed: bool = False, **facts: Any
-) -> Finding:
-    """A finding that speaks of all that rounds to the digits: enclosed, or tried at their ends."""
-    return asked.row.finding(
-        "TG304",
-        verdict=verdict,
-        basis=Basis.CHECK if enclosed else Basis.COMPUTED,
-        claim=asked.claim.id,
-        kind=kind,
-        **facts,
-    )
+def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, *said: str, **facts: Any) -> Finding:
+    given = {"basis": Basis.COMPUTED, "claim": asked.claim.id, "verdict": verdict} | facts
+    return asked.row.finding("TG304", kind, *said, **given)
+
+
+def _ends(number: Measured) -> tuple[float, float]:
+    """Ends of what a printed number stands for, its digits rounded or cut off."""
+    cut = number.cut_off()
+    return cut.lower, cut.upper
 
 
 def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
@@ -299,7 +297,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             "shortest from there."
         )
     if asked.profile == ALGORITHM:
-        best = asked.range(lambda motion: [motion.total_time], "s-curve")
+        best = asked.range(total_time, "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
         notes.append(f"The shortest s-curve profile takes {best.plain:.6g} s{beside}.")
@@ -321,8 +319,7 @@ def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, boo
         high = total(most, Digits.TIGHTEST) * (1.0 + FEW_ROUNDINGS)
     except CaseError:
         high = inf
-    cut = number.cut_off()
-    return plain, meet((cut.lower, cut.upper), (low, high))
+    return plain, meet(_ends(number), (low, high))
 
 
 def _phases_beside(asked: _Asked) -> Finding:
@@ -333,38 +330,30 @@ def _phases_beside(asked: _Asked) -> Finding:
         asked.range(lambda motion, k=k: [motion.parts[k]])  # type: ignore[misc]
         for k in range(len(printed))
     ]
-    sizes = [asked.row.time(one) for one in printed]
-    fits = all(
-        one.meets(size.lower, size.cut_off().upper) for one, size in zip(found, sizes, strict=True)
-    )
-    totals = asked.range(lambda motion: [motion.total_time])
+    sizes = [_ends(asked.row.time(one)) for one in printed]
+    fits = all(one.meets(size) for one, size in zip(found, sizes, strict=True))
+    totals = asked.totals
     shown = ", ".join(f"{one.plain:.5g}" for one in found)
     digits = ", ".join(map(str, printed))
     kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
     how = "fit" if fits else "do not fit"
     if kind == "other phases" and not all(one.in_order for one in asked.every()):
-        ends = [one.cut_off() for one in sizes[:3]]
-        if totals.meets(sum(one.lower for one in ends), sum(one.upper for one in ends)):
+        lower, upper = map(sum, zip(*sizes[:3], strict=True))
+        if totals.meets((lower, upper)):
             kind = "more phases"
             how += "; the profile has more phases, which can be combined in more than one way"
-    verdict = {
-        "fits": ClaimVerdict.SUPPORTED,
-        "other phases": ClaimVerdict.INCONSISTENT,
-        "jump": ClaimVerdict.NOT_CHECKABLE,
-        "more phases": ClaimVerdict.NOT_CHECKABLE,
-    }[kind]
+    decided = {"fits": ClaimVerdict.SUPPORTED, "other phases": ClaimVerdict.INCONSISTENT}
+    verdict = decided.get(kind, ClaimVerdict.NOT_CHECKABLE)
     ramps = " and ramps" if claim.ramps else ""
     return _found(
         asked,
         verdict,
         kind,
+        f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases{ramps} of "
+        f"{shown} s; the printed {digits} {unit} {how}.",
+        *_notes(asked, totals),
         printed=f"{digits} {unit}",
         computed=f"{shown} s",
-        sentences=(
-            f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases"
-            f"{ramps} of {shown} s; the printed {digits} {unit} {how}.",
-            *_notes(asked, totals),
-        ),
     )
 
 
@@ -391,11 +380,9 @@ def _numbers_beside(asked: _Asked) -> Finding:
         size = row.measured(number, claim.derivative, joint)
         values = partial(numbers_of, row, claim, [joints.index(one) for one in own])
         found = asked.range(values, gradual=gradual)
-        cut = size.cut_off()
-        fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
+        fits = found.meets(_ends(size))
         wrong = wrong or not fits
-        shown = row.in_units(claim.derivative, found.plain, joint)
-        plain.append(f"{shown:.6g} {row.unit(claim.derivative, joint)}")
+        plain.append(row.shown(claim.derivative, found.plain, joint))
         whose = "all joints" if joint is None else f"joint {joint}"
         said.append(
             f"the {size_word}{claim.derivative} of {whose}{where} is {plain[-1]}; the printed "
@@ -407,9 +394,9 @@ def _numbers_beside(asked: _Asked) -> Finding:
         asked,
         ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
         "off" if wrong else "fits",
+        f"For the {asked.called} {asked.between}: {'; '.join(said)}.",
         printed=", ".join(map(str, claim.printed)),
         computed="; ".join(plain),
-        sentences=(f"For the {asked.called} {asked.between}: {'; '.join(said)}.",),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,7 @@ from ...gaps import (
     spread,
 )
 from ..kept_replays import Replays
-from ..printed_row import rows_under
+from ..printed_row import PrintedRow, rows_under
 from ..replay_settings import LISTED
 from ..stated import other_objective
 from ..study import Pair, Study
@@ -82,16 +83,13 @@ def _found(
     study: Study, rule: str, claim: AnyClaim, pair: Pair, printed: str | None = None
 ) -> Callable[..., Finding]:
     """A finding of a rule about replays of a claim's algorithms, in want of what it says."""
-    return partial(
-        Finding,
-        rule=rule,
-        basis=Basis.REPLAY,
-        decides=False,
-        claim=claim.id,
-        problem=pair.problem,
-        reading=pair.reading,
-        printed=printed,
-    )
+    facts: dict[str, Any] = {"basis": Basis.REPLAY, "decides": False, "printed": printed}
+    return partial(PrintedRow(study, claim, pair).finding, rule, **facts)
+
+
+def _pairs(study: Study, claim: AnyClaim) -> list[Pair]:
+    """The problems that a claim may speak about, under the main reading."""
+    return [pair for pair in study.main_pairs if claim.problem in (None, pair.problem)]
 
 
 def _totals(runs: Replays) -> Array:
@@ -108,9 +106,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
     if None in names or claim.percent is None:
         return
     least = claim.percent.lower / 100
-    for pair in study.main_pairs:
-        if claim.problem not in (None, pair.problem):
-            continue
+    for pair in _pairs(study, claim):
         spreads = [study.spread_runs(str(name), pair) for name in names]
         if not spreads[0] or not spreads[1]:
             continue
@@ -133,8 +129,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             f"In {study.options.seeds} independent runs each, {one} reaches {spread(slower)} and "
             f"{other} reaches {spread(faster)} under the listed choices.",
             f"One run of {other} is at least {100 * least:.4g} % shorter than one of {one} "
-            f"with probability {_percent(shows)} ({sure}). For two runs of {one}, this "
-            f"probability "
+            f"with probability {_percent(shows)} ({sure}). For two runs of {one}, this probability "
             f"is {_percent(luck)}.",
         ]
         if len(each) > 1:
@@ -145,8 +140,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             )
         median = 1 - spread(faster).median / spread(slower).median
         found = _found(study, "TG401", claim, pair, f"{claim.percent} %")
-        computed = f"median {100 * median:.3g} %"
-        yield found(kind="runs", sentences=tuple(said), computed=computed)
+        yield found("runs", *said, computed=f"median {100 * median:.3g} %")
 
 
 def interval_words(low: float, high: float) -> str:
@@ -164,9 +158,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
     """Two algorithms that a sentence compares: totals, and how soon a run has settled."""
     own, other = study.called(str(claim.algorithm)), study.called(against)
     seeds = study.options.seeds
-    for pair in study.main_pairs:
-        if claim.problem not in (None, pair.problem):
-            continue
+    for pair in _pairs(study, claim):
         each = (str(claim.algorithm), against)
         runs = {study.called(one): study.runs(one, pair) for one in each}
         if not all(runs.values()):
@@ -181,14 +173,12 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             for name, found in runs.items()
         )
         yield _found(study, "TG401", claim, pair)(
+            "runs",
+            f"In {seeds} independent runs each under the listed choices, {own} reaches "
+            f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
+            f"of {own} is no longer than one of {other} with probability {_percent(shorter)} "
+            f"({interval_words(low, high)}): {settled}.",
             computed=f"shorter in {_percent(shorter)} of the pairs",
-            kind="runs",
-            sentences=(
-                f"In {seeds} independent runs each under the listed choices, {own} reaches "
-                f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
-                f"of {own} is no longer than one of {other} with probability {_percent(shorter)} "
-                f"({interval_words(low, high)}): {settled}.",
-            ),
         )
 
 
@@ -206,28 +196,24 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         found = _found(study, "TG402", claim, pair, shown)
         runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
-            why = study.unreplayed(claim.algorithm, pair) or ""
-            yield found(kind="not replayed", sentences=(why,))
+            yield found("not replayed", study.unreplayed(claim.algorithm, pair) or "")
             continue
         minimised = other_objective(study.case, claim)
         if minimised is not None:
-            said = (
-                f"A replay minimises time alone, but {shown} was minimised for {minimised}, so "
-                "the two "
-                "are not compared."
+            yield found(
+                "other objective",
+                f"A replay minimises time alone, but {shown} was minimised for {minimised}, so the "
+                "two are not compared.",
             )
-            yield found(kind="other objective", sentences=(said,))
             continue
         spreads = {name: spread(_totals(one)) for name, one in runs.items()}
         listed = spreads[LISTED]
         yield found(
+            "runs",
+            f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
+            f"{listed} in {listed.runs} independent runs; the printed total is {shown}.",
+            *_typical(spreads, low, high),
             computed=f"{ranged(listed.lowest, listed.highest, '.6f')} s",
-            kind="runs",
-            sentences=(
-                f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
-                f"{listed} in {listed.runs} independent runs; the printed total is {shown}.",
-                *_typical(spreads, low, high),
-            ),
         )
 
 
@@ -241,8 +227,7 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
     yield (
         f"With everything that the text leaves open varied together ({len(medians)} settings), "
-        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; the "
-        f"nearest "
+        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; the nearest "
         f"to the printed total is {medians[nearest]:.4f} s, with {nearest}."
     )
     if inside:
@@ -272,14 +257,11 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
     """How many runs settle in time, under every setting, and how much the tolerance changes it."""
     if claim.algorithm is None:
         return
-    for pair in study.main_pairs:
-        if claim.problem not in (None, pair.problem):
-            continue
+    for pair in _pairs(study, claim):
         found = _found(study, "TG403", claim, pair, f"{claim.iterations} iterations")
         runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
-            why = study.unreplayed(claim.algorithm, pair) or ""
-            yield found(kind="not replayed", sentences=(why,))
+            yield found("not replayed", study.unreplayed(claim.algorithm, pair) or "")
             continue
         parts: list[str] = []
         spans: list[str] = []
@@ -291,20 +273,18 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
             share = f"{_percent(within[LISTED])}{'' if parts else ' of the runs'}"
             parts.append(f"{share} lie within {100 * tolerance:g} %")
             spans.append(f"{_percent(min(within.values()))} to {_percent(max(within.values()))}")
-        varied = (
-            f"Over {len(runs)} settings of what the text leaves open these shares "
-            f"range from {' and from '.join(spans)}."
-            if len(runs) > 1
-            else ""
-        )
+        varied = ""
+        if len(runs) > 1:
+            varied = (
+                f"Over {len(runs)} settings of what the text leaves open these shares "
+                f"range from {' and from '.join(spans)}."
+            )
         settled = _settled(runs[LISTED], SETTLED)
         yield found(
+            "runs",
+            f"After {claim.iterations} iterations {parts[0]} of their final value, and "
+            f"{parts[1]}, counted over {settled.size} runs under the listed choices.",
+            varied,
+            "The text names no tolerance.",
             computed=f"median {np.median(settled):.0f} iterations",
-            kind="runs",
-            sentences=(
-                f"After {claim.iterations} iterations {parts[0]} of their final value, and "
-                f"{parts[1]}, counted over {settled.size} runs under the listed choices.",
-                varied,
-                "The text names no tolerance.",
-            ),
         )
