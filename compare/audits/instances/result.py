@@ -297,19 +297,13 @@ def _reductions(result: InstancesResult) -> Iterator[Reduction]:
                         else "fewer than two instances have answers"
                     )
                     none = Why("no pair of runs has two answers")
+                    numbers = {k: none if empty else v for k, v in vars(found).items()}
                     yield Reduction(
                         reading=reading,
                         effect=effect,
                         objective=None if alone else objective,
                         step=step,
-                        pairs=found.pairs,
-                        missing=found.missing,
-                        lowest=none if empty else found.lowest,
-                        lower_quarter=none if empty else found.lower_quarter,
-                        median=none if empty else found.median,
-                        upper_quarter=none if empty else found.upper_quarter,
-                        highest=none if empty else found.highest,
-                        shorter=none if empty else found.shorter,
+                        **numbers | {"pairs": found.pairs, "missing": found.missing},
                         median_from=low if np.isfinite(low) else apart,
                         median_to=high if np.isfinite(high) else apart,
                     )

@@ -21,10 +21,10 @@ from ....problem import (
 from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, printed_rows
-from ..rounding import ROUNDING, Agreement, RoundingBox
+from ..rounding import ROUNDING, Agreement
 from ..stated import DERIVATIVES, place
 from ..study import Study
-from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change
+from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change, split
 from .rule_group import Explained, rule_group
 
 _PHASES = 8
@@ -51,9 +51,7 @@ def _reach(row: PrintedRow[Claim], points: list[Extremum], share: Array) -> floa
 
 
 def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
-    """Largest change of a peak that is found in the rounding box.
-
-    It has the SI unit of the peak.
+    """Largest change of a peak that is found in the rounding box, in SI units.
 
     Parameters
     ----------
@@ -62,26 +60,23 @@ def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float
     alone : bool
         Whether it is that of its own joint, and not of all.
     share : float
-        How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
+        How wide the box is, see `largest_change`.
     """
     problem = row.posed()
     joints = [top.joint] if alone else range(len(problem.joints))
 
-    def look(h: RoundingBox, q: RoundingBox) -> Look:
-        moved = fit(problem.curve, q.value, h.value)
+    def look(at: Array, low: Array, high: Array) -> Look:
+        q, h = split(at, row.boxes)
+        moved = fit(problem.curve, q, h)
         ends = (e for j in joints for e in extrema(moved, j, top.order))
         here = max(ends, key=lambda e: abs(e.value))
-        g = peak_gradients(replace(problem, waypoints=q.value), h.value, [here])
-        by_angle = np.zeros_like(q.value)
+        g = peak_gradients(replace(problem, waypoints=q), h, [here])
+        by_angle = np.zeros_like(q)
         by_angle[:, here.joint] = g.waypoints[0]
         slopes = np.sign(here.value) * np.append(g.durations[0], by_angle)
-        down, up = (
-            slopes * np.append(getattr(h, end) - h.value, getattr(q, end) - q.value)
-            for end in ("lower", "upper")
-        )
-        return Look(abs(here.value), down, up)
+        return Look(abs(here.value), slopes * (low - at), slopes * (high - at))
 
-    return largest_change(*row.boxes, share, look)
+    return largest_change(row.boxes, share, look)
 
 
 def largest(row: PrintedRow[Claim], order: int) -> list[Extremum]:
