@@ -46,8 +46,8 @@ from .digit_ranges import implausible
 from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
+from .intervals import SEEDS, AuditOptions
 from .judging import judge, rested, weigh
-from .options import SEEDS, AuditOptions
 from .paper_runs import reached
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance

@@ -1,21 +1,57 @@
-"""Proved intervals for an audit: shipped, given in files, or certified within a time budget."""
+"""Options of an audit, and its proved intervals: shipped, given in files, or certified in time."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from ...nlp import ExactProblem, Outcome, ProvedInterval, certificate, certify, proved
 from ...nlp.proofs import allowance, covered, interval_of
 from ...problem import TrajgapError
 from ...verify import Subject
-from .options import AuditOptions
 
+SEEDS = 100
+"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
 ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
 not seconds, so no verdict depends on how busy the machine is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AuditOptions:
+    """Options of an audit; the fields are the parameters of `audit`.
+
+    Raises
+    ------
+    TrajgapError
+        If there are fewer than two seeds.
+    """
+
+    seeds: int = SEEDS
+    workers: int | None = 1
+    problem: str | None = None
+    reading: str | None = None
+    progress: Callable[[str], None] | None = None
+    certify_seconds: float | None = None
+    certificates: Sequence[dict[str, Any]] = ()
+    certificates_folder: str | None = None
+    draft: bool = False
+    cache: bool | Path = False
+
+    def __post_init__(self) -> None:
+        if self.seeds < 2:
+            raise TrajgapError(
+                f"seeds: {self.seeds} show no spread; give 2 or more, 30 is customary"
+            )
+
+
+USUAL = AuditOptions()
+"""The options of an audit that names none."""
 
 
 class Intervals:

@@ -47,8 +47,7 @@ def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile |
     if cruise > 0.0:
         return _of_parts(start, (*lengths,), (*ramps,), cruise, jerk)
     size = sizes.acceleration
-    # 10_000: bound of that loop; 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴.
-    for _ in repeat(None, 10_000):
+    for _ in repeat(None, 10_000):  # 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴
         ramp = size / jerk
         root = (
             size**4 / jerk**2 + 2.0 * (v0**2 + v1**2) + size * (4.0 * way - 2.0 * ramp * (v0 + v1))
@@ -60,8 +59,7 @@ def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile |
             return _one_sided(start, way, v1, jerk, falling=both[0] < 0.0)
         if min(both) >= 2.0 * ramp:
             return _of_parts(start, (*both,), (ramp, ramp), 0.0, jerk)
-        # 0.99: factor by which the book shrinks the acceleration until its formulas close: with it,
-        # Example 3.11 ends at the printed 6.9641 = 10·0.99³⁶.
+        # With the book's factor, its Example 3.11 ends at the printed 6.9641 = 10·0.99³⁶.
         size *= 0.99
     return None
 

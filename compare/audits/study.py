@@ -44,10 +44,9 @@ from ...problem.cases import (
     TimeClaim,
 )
 from ..documents import capital, noted
-from .intervals import Intervals
+from .intervals import USUAL, AuditOptions, Intervals
 from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
-from .options import USUAL, AuditOptions
 from .replay_settings import LISTED, spread_settings
 from .stated import RowClaim, in_words, in_words_among, printed_total
 

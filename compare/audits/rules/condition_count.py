@@ -106,6 +106,7 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
         basis=Basis.COUNT,
         printed=printed,
         computed=computed,
+        # A printed count may be wrong; that the declared curve meets its own conditions cannot.
         built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
 
@@ -143,13 +144,11 @@ def meets(degree: int, start: Sequence[int], end: Sequence[int]) -> bool:
     start, end : sequence of int
         Orders of the derivatives that vanish at 0 and at 1.
     """
-    rows = [[_slope(power, 0, 0) for power in range(degree + 1)] + [Fraction(0)]]
-    rows.append([_slope(power, 0, 1) for power in range(degree + 1)] + [Fraction(1)])
-    for at, orders in ((0, start), (1, end)):
-        rows += [
-            [_slope(power, order, at) for power in range(degree + 1)] + [Fraction(0)]
-            for order in orders
-        ]
+    asked = [(0, 0, 0), (0, 1, 1), *((order, 0, 0) for order in start), *((o, 1, 0) for o in end)]
+    rows = [
+        [*(_slope(power, order, at) for power in range(degree + 1)), Fraction(value)]
+        for order, at, value in asked
+    ]
     for column in range(degree + 1):
         pivot = next((row for row in rows if row[column] != 0), None)
         if pivot is None:
