@@ -197,7 +197,10 @@ def _caveats(
         yield nature_caveat(claim.nature)
     doubts = _doubts(study, claim, own, findings)
     if doubts:
-        partly = _without_points(judgement, own)
+        # What needs no way-points may be against it under every reading by itself.
+        apart = [f for f in own if f.verdict == judgement.verdict and not _through_points(f)]
+        every = all(any(f.reading in (None, r) for f in apart) for r in judgement.readings)
+        partly = judgement.verdict in AGAINST and every
         kind = CaveatKind.SOME_POINTS if partly else CaveatKind.POINTS
         yield Caveat(kind, f"{'partly ' if partly else ''}{POINTS}", " ".join(doubts))
     rests = {claim.id, *_rests_on(claim)}
@@ -240,13 +243,6 @@ def _doubts(
 def _through_points(finding: Finding) -> bool:
     decided = finding.verdict in DECIDING and not finding.built
     return decided and finding.basis in _ON_WAYPOINTS
-
-
-def _without_points(judgement: Judgement, own: list[Finding]) -> bool:
-    """Whether what needs no way-points is against a claim under every reading by itself."""
-    said = [f for f in own if f.verdict == judgement.verdict and not _through_points(f)]
-    every = all(any(f.reading in (None, r) for f in said) for r in judgement.readings)
-    return judgement.verdict in AGAINST and every
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

@@ -9,22 +9,11 @@ from typing import cast
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Limits, Printed, Problem, Quantity, evaluate
-from ...problem.cases import AnyClaim, Claim, PeakClaim, Statement, motions_of
+from ...problem.cases import AnyClaim, Claim, PeakClaim, motions_of
 from ..documents import Finding
 from .printed_row import PrintedRow
 from .rules import box_reach, largest
-from .slips import (
-    Slip,
-    Spot,
-    durations,
-    exchanges,
-    limits,
-    misprints,
-    of_rows,
-    turns,
-    values,
-    waypoints,
-)
+from .slips import Slip, durations, exchanges, limits, misprints, of_rows, turns, values, waypoints
 from .stated import RowClaim
 
 _Tried = tuple[Sequence[Slip], Array, Array]
@@ -163,21 +152,17 @@ def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Ite
         columns = np.tile(problem.waypoints[:, j], (len(slips), 1))
         for k, slip in enumerate(slips):
             path, number = slip.edits[0]
-            columns[k, paths.index(path)] += _step(statement, spots, path, number, at)
+            # Whole turns between a printed angle and the one that is meant stay.
+            printed_one = spots[paths.index(path)].number
+            was, now = (statement.si(n, "position", joint=at).value for n in (printed_one, number))
+            columns[k, paths.index(path)] += now - was
         if slips:
-            peaks[:, j] = _peaks_through(problem.joint(int(j)), columns, h)
+            alone = problem.joint(int(j))
+            each = (replace(alone, waypoints=column[:, None]) for column in columns)
+            peaks[:, j] = [_peaks(one, h[None])[0, 0] for one in each]
             yield slips, peaks, sizes[None]
         for r in np.flatnonzero(ratios[j] > 1.0):
             yield from _other_limits(row, problem, printed, int(j), int(r))
-
-
-def _step(
-    statement: Statement, spots: Sequence[Spot], path: object, number: Printed, joint: int
-) -> float:
-    """How far a changed way-point lies from the printed one, rad or m; whole turns stay."""
-    was = next(spot.number for spot in spots if spot.path == path)
-    one, other = (statement.si(n, "position", joint=joint).value for n in (was, number))
-    return other - one
 
 
 def _other_limits(
@@ -204,12 +189,6 @@ def _peaks(problem: Problem, times: Array) -> Array:
     """Largest absolute derivatives, shape (batch, joints, 3), rad and s."""
     plain = Limits(velocity=1.0, acceleration=1.0, jerk=1.0, joints=len(problem.joints))
     return evaluate(replace(problem, limits=plain), times).ratios
-
-
-def _peaks_through(problem: Problem, columns: Array, h: Array) -> Array:
-    """The same of one joint through several columns of way-points, shape (columns, 3)."""
-    each = (replace(problem, waypoints=column[:, None]) for column in columns)
-    return np.array([_peaks(one, h[None])[0, 0] for one in each])
 
 
 def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -> Array:

@@ -143,8 +143,12 @@ def implausible(study: Study) -> dict[str, str]:
     known = {rid: stretch for rid, stretch in found.items() if stretch is not None}
     factors = {rid: exp(abs(log(stretch))) for rid, stretch in known.items()}
     least = min(factors.values(), default=_FAR)
+    far = {rid: factor for rid, factor in factors.items() if factor >= _FAR > least}
     return {
-        rid: _why(known[rid], factor) for rid, factor in factors.items() if factor >= _FAR > least
+        rid: f"printed durations divided by {factor:.3g} would still keep every limit"
+        if known[rid] < 1
+        else f"printed durations keep the limits only if multiplied by {factor:.3g}"
+        for rid, factor in far.items()
     }
 
 
@@ -155,9 +159,3 @@ def _stretch(study: Study, reading: str) -> float | None:
     checked = [row.check_or_none for row in rows_under(study, timed, reading)]
     stretches = [found.stretch for found in checked if found is not None]
     return max((one for one in stretches if isfinite(one) and one > 0), default=None)
-
-
-def _why(stretch: float, factor: float) -> str:
-    if stretch < 1:
-        return f"printed durations divided by {factor:.3g} would still keep every limit"
-    return f"printed durations keep the limits only if multiplied by {factor:.3g}"

@@ -63,7 +63,12 @@ def advise(
             says = f"Readers cannot check this: {judgement.why}"
             change = "Print what is missing, or drop the claim."
             found.append(_advice(Urgency.OPEN, claim, says, change))
-    found += _following(study, left)
+    # Claims that change because others do, each with all its edits.
+    for claim in study.case.claims:
+        own = tuple(one for one in left if one.claim == claim.id)
+        if own:
+            says = "Rests on numbers that change above."
+            found.append(_advice(Urgency.FOLLOWS, claim, says, _told(study, claim, own), own))
     found += _left_open(study)
     return tuple(sorted(found, key=lambda one: list(Urgency).index(one.urgency)))
 
@@ -99,15 +104,6 @@ def _of_cause(study: Study, cause: Cause, edits: tuple[Edit, ...]) -> Advice:
     return _advice(urgency, claim, " ".join(plainly(study.case, cause)), change or unknown, edits)
 
 
-def _following(study: Study, edits: Sequence[Edit]) -> Iterator[Advice]:
-    """Claims that change because others do, each with all its edits."""
-    for claim in study.case.claims:
-        own = tuple(one for one in edits if one.claim == claim.id)
-        if own:
-            says = "Rests on numbers that change above."
-            yield _advice(Urgency.FOLLOWS, claim, says, _told(study, claim, own), own)
-
-
 # --- sentences ------------------------------------------------------------------------------------
 
 
@@ -120,7 +116,8 @@ def _told(study: Study, about: AnyClaim | None, edits: Sequence[Edit]) -> str:
     for claim_id, keys in groups.items():
         if claim_id is None:
             (meant,) = next(iter(keys.values())).becomes
-            said.append(f"The numbers given here assume {_why(study, meant)}.")
+            why = next(one.why for one in study.case.readings if one.id == meant)
+            said.append(f"The numbers given here assume “{why.removesuffix('.')}”.")
             continue
         claim = study.case.claim(claim_id)
         sentence = _sentence(study, claim, keys)
@@ -128,11 +125,6 @@ def _told(study: Study, about: AnyClaim | None, edits: Sequence[Edit]) -> str:
         where = f"{claim.where[:1].upper()}{claim.where[1:]}"
         said.append(f"{where}: {sentence}" if elsewhere else sentence)
     return " ".join(said)
-
-
-def _why(study: Study, reading: str) -> str:
-    why = next(one.why for one in study.case.readings if one.id == reading)
-    return f"“{why.removesuffix('.')}”"
 
 
 def _sentence(study: Study, claim: AnyClaim, keys: dict[str, Edit]) -> str:
@@ -175,7 +167,10 @@ def _of_readings(
     groups: dict[ClaimVerdict, list[str]] = {}
     for rid, word in judgement.readings.items():
         groups.setdefault(word, []).append(whys.get(rid, rid))
-    parts = [f"{word} if {_some(names)}" for word, names in groups.items()]
+    parts = []
+    for word, names in groups.items():
+        more = f" (and {len(names) - 1} more)" if len(names) > 1 else ""
+        parts.append(f"{word} if “{names[0]}”{more}")
     ways = f"{len(judgement.readings)} ways, and this is {'; '.join(parts)}"
     told = f" {_told(study, claim, edits)}" if edits else ""
     return _advice(
@@ -185,12 +180,6 @@ def _of_readings(
         f"State in the text which is meant: units, curve, knots and ends.{told}",
         edits,
     )
-
-
-def _some(names: Sequence[str]) -> str:
-    """The first reason, and how many more there are."""
-    more = f" (and {len(names) - 1} more)" if len(names) > 1 else ""
-    return f"“{names[0]}”{more}"
 
 
 def _left_open(study: Study) -> Iterator[Advice]:

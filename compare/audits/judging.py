@@ -80,7 +80,11 @@ def judge(
             for one in grouped(said, tuple(each), named)
             for sentence in with_readings(one, tuple(each), named, word=depends, why=True)
         )
-        confidence = _confidence(behind, verdict)
+        # One finding contradicts a claim, so the strongest counts; support, and what depends on
+        # the reading, rests on all of them.
+        ways = [f.confidence for f in behind if isinstance(f.confidence, Confidence)]
+        strongest = min if verdict in AGAINST else max
+        confidence = strongest(ways, key=list(Confidence).index, default=UNDECIDED)
     return Judgement(
         claim=claim,
         verdict=verdict,
@@ -141,18 +145,6 @@ def _open(judgement: Judgement, where: str) -> Judgement:
         sentences=(f"It rests on what {where} prints, which is refuted.", *judgement.sentences),
         readings=dict.fromkeys(judgement.readings, ClaimVerdict.NOT_CHECKABLE),
     )
-
-
-def _confidence(behind: Iterable[Finding], verdict: ClaimVerdict) -> Confidence | Why:
-    """How a verdict is known.
-
-    One finding contradicts a claim, so the strongest counts; support, and what depends on the
-    reading, rests on all of them.
-    """
-    known = [f.confidence for f in behind if isinstance(f.confidence, Confidence)]
-    one = verdict in AGAINST
-    order = list(Confidence).index
-    return (min if one else max)(known, key=order, default=UNDECIDED)
 
 
 def weigh(

@@ -109,7 +109,10 @@ class KeptReplays(KeptFiles):
         def compute() -> Iterator[Run]:
             for called, one in algorithms.items():
                 progress(called)
-                use = _worth(seeds * one.iterations) if workers is None else workers
+                # Fewer iterations take some seconds side by side, and each process takes two to
+                # import what it needs.
+                worth = (os.cpu_count() or 1) if seeds * one.iterations >= 50_000 else 1
+                use = worth if workers is None else workers
                 if apart:
                     for joints in run_many_per_joint(one, problem, range(seeds), use):
                         yield from joints.runs
@@ -126,13 +129,6 @@ class KeptReplays(KeptFiles):
                 else tuple(each[0] for each in mine)
             )
         return found
-
-
-def _worth(iterations: int) -> int:
-    """Processes that pay for so many iterations of all seeds."""
-    # 50_000: iterations of all seeds of a replay from which further processes pay: fewer take some
-    # seconds side by side, and each process takes two to import what it needs.
-    return (os.cpu_count() or 1) if iterations >= 50_000 else 1
 
 
 def _question(asked: Sequence[AskedReplay]) -> dict[str, Any]:

@@ -243,11 +243,6 @@ def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 
-def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str | None, str | None]:
-    slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
-    return slow and slow[0], fast and fast[0]
-
-
 def examinable(study: Study) -> tuple[InstancesBlock, ...]:
     """Designs of instances of which both problems and some reading are selected.
 
@@ -319,6 +314,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)
     ]
+    slow, fast = (study.claim_total(side, readings[0]) for side in _sides(study, block))
     return InstancesResult(
         block=block,
         slower=slower,
@@ -331,6 +327,6 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
             study.options.workers or os.cpu_count() or 1,
             lambda done: study.progress(f"{what}, {done}"),
         ),
-        printed_totals=_printed_totals(study, block, readings[0]),
+        printed_totals=(slow and slow.shown, fast and fast.shown),
         labels=study.case.labels,
     )

@@ -12,7 +12,6 @@ from ....problem import (
     QUANTITIES,
     Array,
     LimitPair,
-    Measured,
     Problem,
     Trajectory,
     control_vertices,
@@ -133,7 +132,11 @@ def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
     ]
     if not pairs:
         return None
-    if all(_alike(ours, sheet) for ours, sheet in pairs):
+    if all(
+        ours.lower <= sheet.upper + _DATA_SHEET * sheet.value
+        and sheet.lower <= ours.upper + _DATA_SHEET * sheet.value
+        for ours, sheet in pairs
+    ):
         return Speaks.FOR, f"{clue.quantity} limits equal those of the data sheet"
     ratios = [ours.value / sheet.value for ours, sheet in pairs]
     low, high = (f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
@@ -142,11 +145,6 @@ def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
     within = below and min(ratios) >= _FILLED
     speaks = Speaks.FOR if within else Speaks.AGAINST
     return speaks, f"{clue.quantity} limits {times} times those of the data sheet"
-
-
-def _alike(one: Measured, other: Measured) -> bool:
-    slack = _DATA_SHEET * other.value
-    return one.lower <= other.upper + slack and other.lower <= one.upper + slack
 
 
 def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:

@@ -131,8 +131,6 @@ def all_comparisons() -> tuple[Comparison, ...]:
 
 _TOGETHER = "all joints together"
 """Where a study names no other way of searching: a card calls such an optimum so."""
-_STRONG = 0.75
-"""Probability from which the text says that taking something away changes a run: 3 of 4 pairs."""
 
 
 @rule_group(
@@ -187,12 +185,14 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
             for one in known.designed
         ]
         best = max(known.designed, key=lambda one: one.most or 0.0)
+        most = ""
+        if best.most:
+            settings = f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
+            most = f", most often with {settings} ({_percent(best.most)})"
         yield (
             f"If everything that the text leaves open is varied together, this is typical (true "
-            f"of at least half of the pairs of runs) for {' and for '.join(counts)}"
-            + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
-               else ".")
-        )  # fmt: skip
+            f"of at least half of the pairs of runs) for {' and for '.join(counts)}{most}."
+        )
     yield from _taken_away(known.ablated, case)
 
 
@@ -236,32 +236,24 @@ def _sure(one: Listed) -> str:
     return f"95 % interval {_percent(one.shown.lowest)} to {_percent(one.shown.highest)}"
 
 
-def _settings(known: Comparison, best: Designed) -> str:
-    return f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
-
-
 def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
-    """What single parts of the improvement change, for each problem in a sentence."""
+    """What single parts of the improvement change, for each problem in a sentence.
+
+    That it helps or harms is said where 3 of 4 pairs show it.
+    """
     alone = [one for one in ablated if len(one.without) == 1 and one.shown.shorter is not None]
     for problem, searched in _called(case, [one.problem for one in alone]).items():
         parts = [
             f"{' and '.join(one.without)} {_percent(one.shown.shorter)}"
-            + (" (it helps)" if _above(one) else " (it harms)" if _below(one) else "")
+            + (" (it helps)" if shorter >= 0.75 else " (it harms)" if shorter <= 0.25 else "")
             for one in alone
+            for shorter in (one.shown.shorter or 0.0,)
             if one.problem == problem
         ]
         yield (
             f"{noted('Share of pairs', searched)} in which the complete algorithm is shorter than "
             f"without one improvement: {', '.join(parts)}."
         )
-
-
-def _above(one: Ablated) -> bool:
-    return (one.shown.shorter or 0.0) >= _STRONG
-
-
-def _below(one: Ablated) -> bool:
-    return one.shown.shorter is not None and one.shown.shorter <= 1 - _STRONG
 
 
 def _percent(share: float | None) -> str:

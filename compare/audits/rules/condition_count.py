@@ -173,7 +173,8 @@ def _at_rest(
     study: Study, claim: AnyClaim, of: Sequence[str], orders: Sequence[int]
 ) -> Iterator[Finding]:
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
-    for reading, rows, others in named_rows(study, of or _rows(study)):
+    every = [c.id for c in study.case.claims if isinstance(c, RowClaim)]
+    for reading, rows, others in named_rows(study, of or every):
         moving, judged, built = [], 0, True
         for row in rows:
             if claim.problem not in (None, row.problem) or not row.has_curve:
@@ -210,10 +211,6 @@ def _at_rest(
             reading=reading,
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
-
-
-def _rows(study: Study) -> list[str]:
-    return [c.id for c in study.case.claims if isinstance(c, RowClaim)]
 
 
 def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:

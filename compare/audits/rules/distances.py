@@ -312,19 +312,14 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
         sides.summed += isinstance(claim, RowClaim) and claim.total is None
         sides.rounded_up |= not interval[0] <= solution.best
         return
-    distance = gap(interval, _reference(solution), feasible=False)
+    reference = reference_of(solution)
+    assert reference is not None
+    distance = gap(interval, reference, feasible=False)
     sides.open.append(
         f"{name}: printed {shown} {set_beside(distance)} the "
         f"{optimum_called(solution.problem, solution.evidence)} {solution.best:.6f} s, "
         "and no proof decides whether rounding explains the difference"
     )
-
-
-def _reference(solution: Solution) -> Reference:
-    """The reference interval of a solution that has a positive time."""
-    reference = reference_of(solution)
-    assert reference is not None
-    return reference
 
 
 def _no_optimum(solution: Solution) -> str:

@@ -60,7 +60,10 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
         apart = tables[0] is not tables[1]
         totals = [printed_total(t) for t in tables if t is not None and apart]
         if claim.percent is not None and len(totals) == 2 and None not in totals:
-            fits = _meets(study, claim, claim.percent)
+            allowed = _allowed(study, claim)
+            bases = [base for base in allowed_bases(claim) if _divides(base, allowed[1])]
+            percent = hull(claim.percent)
+            fits = any(meet(percent, _share(*allowed, base)) for base in bases)
             own = f"{between} give {claim.percent} %, but from" if fits else "From"
             yield from _against_tables(study, claim, claim.percent, tables, totals, own)
 
@@ -99,13 +102,6 @@ def _allowed(study: Study, claim: ImprovementClaim) -> tuple[Interval, Interval]
     """Both totals, rounded or cut off, or the sum of digits that were."""
     slower, faster = (study.case.claim(one) for one in (claim.slower, claim.faster))
     return total_allowed(study, slower), total_allowed(study, faster)
-
-
-def _meets(study: Study, claim: ImprovementClaim, percent: Printed) -> bool:
-    """Whether the claim's own two totals give its percentage."""
-    allowed = _allowed(study, claim)
-    bases = [base for base in allowed_bases(claim) if _divides(base, allowed[1])]
-    return any(meet(hull(percent), _share(*allowed, base)) for base in bases)
 
 
 def _percentage(

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
+from ....problem import QUANTITIES, Array, Printed, Trajectory, extrema, fit
 from ....problem.cases import (
     AnyClaim,
     MeasureClaim,
@@ -193,8 +193,8 @@ def value_beside(
     def sides(trajectory: Trajectory, durations: Array) -> tuple[float, float] | None:
         if instant is None and at is None:
             return None
-        time = _time_of(problem.curve, durations, at) if instant is None else instant  # type: ignore[arg-type]
-        return _near(trajectory, time, j, order)
+        passed = durations[: problem.curve.waypoint_breaks[at or 0]].sum()
+        return _near(trajectory, float(passed) if instant is None else instant, j, order)
 
     pair = sides(drawn, printed_durations)
     jumps = pair is not None and abs(pair[0] - pair[1]) > ROUNDING * max(map(abs, pair))
@@ -217,11 +217,6 @@ def value_beside(
             samples.append({"": unit * float(top)})
     shown = row.unit(claim.derivative, joint)
     return nearest_number(printed, shown, joint, meant, samples, row.boxes, spread)
-
-
-def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
-    """When a way-point is passed, s."""
-    return float(durations[: curve.waypoint_breaks[waypoint]].sum())
 
 
 def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[float, float]:

@@ -289,7 +289,9 @@ def _judged(
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
     numbers = "values" if any(statement.linear) else "angles"
-    given = f"The {numbers} of {_named(printed)} are read in {_units(statement)}"
+    units = statement.units.position
+    read_in = ", ".join(units) if isinstance(units, tuple) else str(units)
+    given = f"The {numbers} of {_named(printed)} are read in {read_in}"
     given += f"; {_named(free)} may have any value." if free else "."
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
@@ -345,12 +347,6 @@ def _judged(
         computed=f"smallest distance from the farthest position: {worst}",
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
-
-
-def _units(statement: Statement) -> str:
-    """The units of the robot's joints, each once where one after the other has the same."""
-    units = statement.units.position
-    return ", ".join(units) if isinstance(units, tuple) else str(units)
 
 
 def _named(labels: list[str]) -> str:

@@ -273,10 +273,6 @@ def _maxima(study: Study) -> Iterator[Finding]:
         )
 
 
-def _significant(number: Printed) -> str:
-    return number.text.lstrip("+-").replace(".", "").lstrip("0")
-
-
 def _repeated_digits(study: Study) -> Iterator[Finding]:
     """Way-point digits that stand in another printed column too."""
     case = study.case
@@ -287,7 +283,9 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
             others = {v.text.lstrip("+-") for v in values}
             same = [w for w in entries if w.text.lstrip("+-") in others]
             # Fewer than four digits repeat by chance.
-            repeated = [w.text for w in same if len(_significant(w)) >= 4]
+            repeated = [
+                w.text for w in same if len(w.text.lstrip("+-").replace(".", "").lstrip("0")) >= 4
+            ]
             if len(repeated) >= 2:
                 yield finding(
                     "TG106",

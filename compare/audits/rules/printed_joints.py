@@ -9,7 +9,7 @@ from math import sqrt
 
 from ....problem import Printed
 from ....problem.cases import Cartesian, Statement, StatementClaim
-from ....problem.robots import Chain, Equation, EquationCheck, check_equation
+from ....problem.robots import Chain, Equation, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import meet
 from ..study import Study
@@ -124,7 +124,9 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     names = f"{upper.label or upper.id} lies {{}} {upper.unit} beside {lower.label or lower.id}"
     height = float(upper.values[2].fraction - lower.values[2].fraction)
     said = [f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."]
-    if _meets(upper, lower) and rise.lower > floor.upper:
+    plane = zip(upper.values[:2], lower.values[:2], strict=True)
+    same = all(meet(a.interval, b.interval) for a, b in plane)
+    if same and rise.lower > floor.upper:
         return _finding(claim, "beside and above", said, ClaimVerdict.SUPPORTED)
     least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
     if least[0] < beside[0]:
@@ -152,11 +154,6 @@ def _finding(
         basis=Basis.DIGITS,
         computed=None if own is None else f"{_middle(*own):.2f} in the printed unit",
     )
-
-
-def _meets(one: Cartesian, other: Cartesian) -> bool:
-    pairs = zip(one.values[:2], other.values[:2], strict=True)
-    return all(meet(a.interval, b.interval) for a, b in pairs)
 
 
 def _beside(
@@ -203,7 +200,9 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
         if found.holds:
             held.append(_name(equation))
         elif equation.mended is not None and check_equation(chain, equation.mended).holds:
-            mended.append(f"{_name(equation)} {_partly(found)}with {equation.mend}")
+            # How often it holds as it is, where it does at some poses.
+            partly = f"({found.share:.0%} of the poses as printed) " if found.share else ""
+            mended.append(f"{_name(equation)} {partly}with {equation.mend}")
         else:
             apart.append(_name(equation))
     listed = f": {', '.join(held)}" if held else ""
@@ -231,8 +230,3 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
 
 def _name(equation: Equation) -> str:
     return equation.where.removeprefix("equation ")
-
-
-def _partly(found: EquationCheck) -> str:
-    """How often it holds as it is, where it does at some poses."""
-    return f"({found.share:.0%} of the poses as printed) " if found.share else ""

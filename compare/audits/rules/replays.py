@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....heuristics import JointRuns, Run
+from ....heuristics import JointRuns
 from ....problem import Array
 from ....problem.cases import (
     AnyClaim,
@@ -244,13 +244,10 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
         )
 
 
-def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:
-    return list(chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs))
-
-
 def _settled(runs: Replays, tolerance: float) -> NDArray[np.intp]:
     """The iteration from which each run stays within a share of its final value."""
-    return np.array([settled_at(r.trace, tolerance * r.trace[-1]) for r in _traces(runs)])
+    each = chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs)
+    return np.array([settled_at(r.trace, tolerance * r.trace[-1]) for r in each])
 
 
 def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
