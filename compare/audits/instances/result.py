@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -297,7 +298,9 @@ def _reductions(result: InstancesResult) -> Iterator[Reduction]:
                         else "fewer than two instances have answers"
                     )
                     none = Why("no pair of runs has two answers")
-                    numbers = {k: none if empty else v for k, v in vars(found).items()}
+                    numbers: dict[str, Any] = {
+                        k: none if empty else v for k, v in vars(found).items()
+                    }
                     yield Reduction(
                         reading=reading,
                         effect=effect,

@@ -195,10 +195,10 @@ def nearest_number(
     spread : float
         Further change that rounding allows, in the unit of the paper.
     """
-    value, _, upper = flat(boxes)
-    at_print = meant(*split(value, boxes))
+    middle, _, upper = flat(boxes)
+    at_print = meant(*split(middle, boxes))
     reach = dict.fromkeys(at_print, 0.0)
-    for moved in _each_moved(value, upper):
+    for moved in _each_moved(middle, upper):
         for words, number in meant(*split(moved, boxes)).items():
             reach[words] += abs(number - at_print[words])
     rounded, wide = (

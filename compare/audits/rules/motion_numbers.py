@@ -12,7 +12,6 @@ from ....problem import QUANTITIES, Array, Printed, Trajectory, extrema, fit
 from ....problem.cases import (
     AnyClaim,
     MeasureClaim,
-    MotionValueClaim,
     PeakClaim,
     ValueClaim,
     motions_of,
@@ -288,7 +287,7 @@ def _judged(
 def _found(
     row: PrintedRow[AnyClaim],
     rule: str,
-    claim: MotionValueClaim,
+    claim: _Value,
     found: Sequence[Beside],
     told: Sequence[Beside],
     said: str,
