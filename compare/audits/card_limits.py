@@ -34,11 +34,6 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     """Whether the durations that a paper calls its result keep the limits.
 
     The claims that the sentence speaks of come with it: other rows have sentences of their own.
-
-    Parameters
-    ----------
-    words : mapping of str to Judgement
-        Of each claim, by its id.
     """
     case = study.case
     unknown = "Whether the limits are kept cannot be checked"

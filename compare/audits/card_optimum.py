@@ -50,8 +50,6 @@ def optimum_line(
 
     Parameters
     ----------
-    words : mapping of str to Judgement
-        Of each claim, by its id.
     before : bool
         Whether the line before has said that way-points are in doubt.
     """

@@ -48,13 +48,6 @@ def find_causes(
     of one claim. A finding that follows from the root of another is listed under it.
 
     The gravest cause comes first.
-
-    Parameters
-    ----------
-    findings : iterable of Finding
-        With their final severities.
-    explained : callable
-        From the root of a cause and its first finding to innocent explanations.
     """
     against = [f for f in findings if f.severity in _AGAINST]
     groups: dict[str, list[Finding]] = {}

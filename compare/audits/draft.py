@@ -31,13 +31,6 @@ def advise(
     There is one for each cause, for each claim whose answer depends on the reading, for each claim
     that changes because others do, for each that cannot be checked, and for what is left open.
     Every edit belongs to one of them at least.
-
-    Parameters
-    ----------
-    judgements : sequence of Judgement
-        Of the same audit.
-    edits : sequence of Edit
-        What to change in the draft, of all causes together.
     """
     left = list(edits)
 

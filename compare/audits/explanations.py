@@ -176,10 +176,6 @@ def explained(
     ----------
     groups : sequence of RuleGroup
         What judges a case with a change made.
-    root : str
-        Of the cause.
-    finding : Finding
-        The first finding of the cause.
     """
     kind = root.split(" ")[0]
     if kind == TABLES:

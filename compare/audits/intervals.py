@@ -55,12 +55,7 @@ USUAL = AuditOptions()
 
 
 class Intervals:
-    """Where the proved intervals of one audit come from.
-
-    Parameters
-    ----------
-    options : AuditOptions
-    """
+    """Where the proved intervals of one audit come from."""
 
     def __init__(self, options: AuditOptions) -> None:
         seconds = options.certify_seconds

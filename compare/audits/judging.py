@@ -44,8 +44,6 @@ def judge(
 
     Parameters
     ----------
-    admissible : sequence of str
-        Every reading of the case.
     computed : sequence of str, optional
         The readings that were computed, of which the verdict speaks; all by default.
     named : Named, optional
@@ -110,11 +108,6 @@ def rested(case: Case, judgements: Iterable[Judgement]) -> tuple[Judgement, ...]
     those of no motion, and whether the true ones are as many cannot be said.
 
     Their order stays.
-
-    Parameters
-    ----------
-    judgements : iterable of Judgement
-        One for each claim.
     """
     given = list(judgements)
     refuted = {one.claim for one in given if one.verdict is ClaimVerdict.REFUTED}
@@ -156,13 +149,6 @@ def weigh(
     the claim; otherwise it is a warning, for the reading may not be the one meant.
 
     Their order stays.
-
-    Parameters
-    ----------
-    judgements : iterable of Judgement
-        Of the claims.
-    admissible : sequence of str
-        Every reading of the case.
     """
     refuted = {
         j.claim

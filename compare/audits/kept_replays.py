@@ -53,12 +53,6 @@ class KeptReplays(KeptFiles):
         ----------
         asked : sequence of AskedReplay
             A group that is kept, judged and discarded as a whole.
-        compute : callable
-            Makes the runs, in this order.
-
-        Returns
-        -------
-        tuple of Run
         """
         return self.answers(
             lambda: _question(asked),
@@ -91,11 +85,6 @@ class KeptReplays(KeptFiles):
             Processes; as many as pay if None.
         progress : callable
             Called with what an algorithm is called before it runs.
-
-        Returns
-        -------
-        dict
-            Under the same words.
         """
         apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
         single = [problem.joint(j) for j in range(len(problem.joints))] if apart else [problem]

@@ -17,14 +17,8 @@ from .rounding import FEW_ROUNDINGS
 def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The profile of the algorithm, which is not the shortest where it shrinks the acceleration.
 
-    It is None if the algorithm has no answer.
-
-    Parameters
-    ----------
-    start, finish : AxisState
-        Accelerations of 0, velocities within the limit.
-    sizes : Sizes
-        Finite.
+    Its ends have no acceleration and velocities within the limit, and its sizes are finite. It is
+    None if the algorithm has no answer.
 
     Notes
     -----

@@ -73,12 +73,7 @@ def _jump(
 ) -> tuple[float, float] | None:
     """The values on both sides of the widest gap, where inputs are brought together over it.
 
-    It is None if that closes the gap.
-
-    Parameters
-    ----------
-    found : sequence of (float, ProfileMotion)
-        Values in order, and the motion of each.
+    It is None if that closes the gap. Values stand in order, each with its motion.
     """
     gaps = np.diff([value for value, _ in found])
     if not len(gaps):

@@ -45,8 +45,6 @@ class PrintedRow(Generic[C]):
     ----------
     claim : Claim
         A claim with durations or a total, for methods that return a motion or a time.
-    pair : Pair
-        Problem and reading.
     """
 
     study: Study

@@ -44,15 +44,7 @@ ALIKE_READINGS = 1e-6
 def readings_summary(
     study: Study, waterfalls: Iterable[Waterfall], judgements: Iterable[Judgement]
 ) -> ReadingsSummary | None:
-    """Set the readings of a case side by side; None if there is only one.
-
-    Parameters
-    ----------
-    waterfalls : iterable of Waterfall
-        They name the printed answer of each problem.
-    judgements : iterable of Judgement
-        Of the claims, over all admissible readings.
-    """
+    """Set the readings of a case side by side; None if there is only one."""
     admissible = tuple(reading.id for reading in study.case.readings)
     if len(admissible) < 2:
         return None

@@ -47,10 +47,6 @@ def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> t
 
     Parameters
     ----------
-    study : Study
-        Of the draft.
-    first : (findings, judgements)
-        Of its audit.
     again : callable
         Audits the edited draft.
     """

@@ -23,11 +23,6 @@ def edited(case: Case, edits: Iterable[Edit]) -> Case:
     """The case as it reads after edits.
 
     It counts as not read from a file.
-
-    Parameters
-    ----------
-    edits : iterable of Edit
-        Of one audit, all or some of them.
     """
     claims = {claim.id: claim for claim in case.claims}
     readings = case.document.readings
@@ -76,8 +71,6 @@ class Reworded(Study):
     ----------
     case : Case
         The original's, with other claims, readings or algorithms.
-    certify_seconds : float or None
-        As in `Study`.
     """
 
     def __init__(self, case: Case, original: Study, certify_seconds: float | None = None) -> None:

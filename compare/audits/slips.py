@@ -76,13 +76,7 @@ def _edited(block: Any, path: Path, number: Printed) -> Any:
 
 
 def misprints(spot: Spot, signed: bool = False) -> Iterator[Slip]:
-    """One digit changed, two neighbours exchanged, the point moved or left out, a sign lost.
-
-    Parameters
-    ----------
-    signed : bool
-        Whether the number may have a sign.
-    """
+    """One digit changed, two neighbours exchanged, the point moved or left out, a sign lost."""
     was = spot.number
     for other in was.slips():
         if other.fraction == was.fraction or (other.fraction <= 0 and not signed):

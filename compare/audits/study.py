@@ -77,8 +77,6 @@ class Study:
 
     Parameters
     ----------
-    case : Case
-    options : AuditOptions
     **given
         Fields of the options to change.
     """

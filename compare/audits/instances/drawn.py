@@ -266,11 +266,6 @@ def unexamined(study: Study, block: InstancesBlock) -> str | None:
 def examined(study: Study, block: InstancesBlock) -> InstancesResult:
     """What the two procedures of an improvement do on instances that are drawn for it, once.
 
-    Parameters
-    ----------
-    block : InstancesBlock
-        For which `readings_of` names some reading.
-
     Raises
     ------
     CaseError

@@ -46,12 +46,8 @@ class Sample:
     ----------
     step : float
         rad or m.
-    index : int
-        Among the instances of its step.
     waypoints : ndarray, shape (way-points, joints)
         rad.
-    slower, faster : Optimum
-        Of the two curves.
     totals : ndarray, shape (objectives, 3, runs)
         Reported totals, s, of the slower procedure, the slower one's algorithm on the faster
         one's curve, and the faster procedure; inf if a run has no answer that keeps its limits.
@@ -75,10 +71,6 @@ class Sample:
         ----------
         objective : int
             Position among the design's objectives; the optima have none.
-
-        Returns
-        -------
-        ndarray, shape (pairs,)
         """
         if effect is Effect.CURVE:
             before, after = np.array([self.slower.total]), np.array([self.faster.total])
@@ -116,14 +108,9 @@ class Distribution:
 
 
 def distribution(reductions: Array) -> Distribution:
-    """Quantiles of reductions.
+    """Quantiles of reductions, which are nan where a pair has none; nothing is clipped.
 
     All are nan if no pair has one.
-
-    Parameters
-    ----------
-    reductions : ndarray, shape (pairs,)
-        nan where a pair has none; nothing is clipped.
     """
     known = reductions[np.isfinite(reductions)]
     if not known.size:

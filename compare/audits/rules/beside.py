@@ -186,8 +186,6 @@ def nearest_number(
     ----------
     unit : str
         Of the paper, as a sentence writes it.
-    joint : str or None
-        Whose number it is.
     meant : callable
         In the unit of the paper.
     samples : sequence of dict

@@ -137,13 +137,7 @@ def _impossible_segments(study: Study, claim: ConditionsClaim) -> list[int]:
 
 
 def meets(degree: int, start: Sequence[int], end: Sequence[int]) -> bool:
-    """Whether some polynomial moves from 0 to 1 while given derivatives vanish at its ends.
-
-    Parameters
-    ----------
-    start, end : sequence of int
-        Orders of the derivatives that vanish at 0 and at 1.
-    """
+    """Whether some polynomial moves from 0 to 1 while derivatives of these orders vanish there."""
     asked = [(0, 0, 0), (0, 1, 1), *((order, 0, 0) for order in start), *((o, 1, 0) for o in end)]
     rows = [
         [*(_slope(power, order, at) for power in range(degree + 1)), Fraction(value)]

@@ -100,10 +100,6 @@ def beside(
 
     Parameters
     ----------
-    claim : PeakClaim
-        Says which derivative.
-    printed : Printed
-        One of its numbers.
     joint : str or None
         Label of the joint; the largest over all joints if None.
     """
@@ -182,13 +178,7 @@ class Norm:
 
 
 def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
-    """Largest norm of a derivative on a printed motion.
-
-    Parameters
-    ----------
-    order : int
-        1 for velocity, 2 for acceleration, 3 for jerk.
-    """
+    """Largest norm of a derivative on a printed motion."""
     motion = row.motion
     top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))
     values = _norm_values(motion, piece, order, np.array([s]))[:, 0]

@@ -239,19 +239,10 @@ def printed_alike(
 
 
 def total_allowed(study: Study, claim: AnyClaim) -> Interval:
-    """What the digits of a total allow, rounded or cut off.
+    """What the digits of a total allow, rounded or cut off, in the unit of time of the file.
 
     A printed total may be the sum of printed digits, so what its parts allow is allowed too.
 
-    Parameters
-    ----------
-    claim : AnyClaim
-        States a total, or durations.
-
-    Returns
-    -------
-    Interval
-        In the unit of time of the file.
     """
     printed = printed_total(claim)
     parts = study.case.printed_durations(claim)
