@@ -286,15 +286,9 @@ def audit_case(study: Study) -> CaseAudit:
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
+    named = Named(study.case.labels, implausible(study), study.main_reading)
     judgements = tuple(
-        judge(
-            claim.id,
-            by_rule,
-            admissible,
-            study.readings,
-            Named(study.case.labels, implausible(study), study.main_reading),
-        )
-        for claim in study.case.claims
+        judge(claim.id, by_rule, admissible, study.readings, named) for claim in study.case.claims
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = rested(study.case, judgements)
@@ -303,18 +297,16 @@ def audit_case(study: Study) -> CaseAudit:
     return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
 
 
-def _judged(group: _Group, study: Study) -> Iterator[Finding]:
+def _judged(group: _Group, study: Study) -> list[Finding]:
     """What rules say; where they fail, what they say of each claim, problem and reading alone."""
     try:
-        yield from list(group(study))
+        return list(group(study))
     except _ENDING:
         raise
     except TrajgapError as error:
-        claims = [(one, _alone(group, study, one)) for one in study.claims]
-        for _, found in claims:
-            yield from found
-        if not any(f.rule == NOT_COMPUTED for _, found in claims for f in found):
-            yield _not_computed(error)
+        found = [f for one in study.claims for f in _alone(group, study, one)]
+        said = any(f.rule == NOT_COMPUTED for f in found)
+        return found if said else [*found, _not_computed(error)]
 
 
 def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:

@@ -180,7 +180,7 @@ class ProfileMotion:
         return np.array([self._at(time - close, joint), self._at(time + close, joint)])
 
     def states(self, joint: int) -> Array:
-        """States between which all rises or falls, on both sides of what jumps, shape (states, 3)."""
+        """States between which all rises or falls, also where it jumps, shape (states, 3)."""
         found: list[AxisState] = []
         for k, law in enumerate(self.laws):
             state = law.start

@@ -60,24 +60,18 @@ def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
 
 
 def _under(study: Study, clue: AnyClue, reading: str) -> Iterator[ReadingClue]:
-    if isinstance(clue, AxisClue):
-        said = _on_axis(study, clue, reading)
-    elif isinstance(clue, DataSheetClue):
-        said = _data_sheet(study, clue, reading)
-    elif isinstance(clue, SmoothClue):
-        said = _smooth(study, clue, reading)
-    else:
-        said = _half_turns(study, clue, reading)
+    match clue:
+        case AxisClue():
+            said = _on_axis(study, clue, reading)
+        case DataSheetClue():
+            said = _data_sheet(study, clue, reading)
+        case SmoothClue():
+            said = _smooth(study, clue, reading)
+        case _:
+            said = _half_turns(study, clue, reading)
     if said is not None:
-        speaks, computed = said
-        yield ReadingClue(
-            clue=clue.id,
-            where=clue.where,
-            text=clue.text,
-            reading=reading,
-            speaks=speaks,
-            computed=computed,
-        )
+        about = {"clue": clue.id, "where": clue.where, "text": clue.text, "reading": reading}
+        yield ReadingClue(speaks=said[0], computed=said[1], **about)
 
 
 _Said = tuple[Speaks, str] | None
