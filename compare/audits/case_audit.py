@@ -41,13 +41,12 @@ from ..documents import (
     known,
 )
 from .card import verdict_card
-from .causes import find_causes, with_caveats
+from .causes import find_causes, judge, rested, weigh, with_caveats
 from .digit_ranges import implausible
 from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
 from .intervals import SEEDS, AuditOptions
-from .judging import judge, rested, weigh
 from .paper_runs import reached
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance

@@ -8,7 +8,7 @@ from decimal import Decimal
 from ...problem.cases import AnyClaim, MaximumClaim, StatementClaim
 from ..documents import Advice, Cause, ClaimVerdict, Edit, Judgement, Severity, Urgency
 from .card_errors import plainly
-from .reworded import CLAIM
+from .roots import CLAIM
 from .stated import claim_text
 from .study import Study
 

@@ -28,10 +28,9 @@ from ...problem import (
 )
 from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
 from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
-from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .rounding import BOXES, RoundingBox, RoundingVerdict, excludes_total, judge_rounding
 from .stated import RowClaim, in_words, in_words_among, own_total, place
 from .study import Pair, Study, Total
-from .total_bound import BOXES, excludes_total
 
 C = TypeVar("C", bound=Claim, covariant=True)
 T = TypeVar("T")

@@ -7,3 +7,5 @@ LIMITS, TABLES, SUM, OPTIMAL = "limits", "tables", "sum", "optimal"
 its parts, durations that are not the shortest."""
 AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Verdicts that speak against a claim."""
+CLAIM, READINGS = "claim", "readings"
+"""Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""

@@ -1,4 +1,4 @@
-"""A printed solution judged however its digits were rounded."""
+"""A printed solution judged however its digits were rounded, and totals that no motion takes."""
 
 from __future__ import annotations
 
@@ -109,9 +109,8 @@ class RoundingBox:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         if not self.value.shape == self.lower.shape == self.upper.shape:
-            raise TrajgapError(
-                "box: value, lower and upper differ in shape; give all three the same shape"
-            )
+            why = "value, lower and upper differ in shape; give all three the same shape"
+            raise TrajgapError(f"box: {why}")
         if not all(np.isfinite(a).all() for a in (self.value, self.lower, self.upper)):
             raise TrajgapError("box: a number is not finite; give finite bounds")
         if (self.lower > self.value).any() or (self.value > self.upper).any():
@@ -266,18 +265,14 @@ def _judge(
         return RoundingVerdict(Rounding.BREAKS, worst, root.place, root.value)
     best, passed = _search(problem, durations, q, at_print)
     if passed:
-        return RoundingVerdict(Rounding.CONSISTENT, worst, best, _positive(root.value))
+        return RoundingVerdict(Rounding.CONSISTENT, worst, best, max(root.value, 0.0) or None)
     found = rows_at(replace(problem, waypoints=best.waypoints), best.durations)
     if found.ratios().max(initial=-np.inf) <= target:
-        return RoundingVerdict(Rounding.UNDECIDED, worst, None, _positive(root.value))
+        return RoundingVerdict(Rounding.UNDECIDED, worst, None, max(root.value, 0.0) or None)
     proof = bound_by_bisection(problem, root, ball, target, found)
     if proof.value > target:
         return RoundingVerdict(Rounding.BREAKS, worst, proof.place, proof.value)
-    return RoundingVerdict(Rounding.UNDECIDED, worst, None, _positive(proof.value))
-
-
-def _positive(value: float) -> float | None:
-    return value if value > 0.0 else None
+    return RoundingVerdict(Rounding.UNDECIDED, worst, None, max(proof.value, 0.0) or None)
 
 
 def _outside_bounds(problem: Problem, durations: RoundingBox) -> Place | None:
@@ -383,3 +378,69 @@ def _descend(problem: Problem, start: Point, low: Array, high: Array) -> tuple[P
         moved = np.clip(x + solved[0] * span, low, high)
         trial = Point(moved[:n], moved[n:].reshape(shape))
     return point, False
+
+
+BOXES = 1000
+"""Boxes of durations that are examined, each in milliseconds: a few seconds at most, and the result
+does not depend on the machine."""
+
+
+def excludes_total(
+    problem: Problem, total: float, waypoints: RoundingBox | None = None, boxes: int = BOXES
+) -> bool | None:
+    """Prove that no durations of a total or less keep the limits, for all way-points of a box.
+
+    It is True if that is proved, False if nothing is said, None if it would take more boxes. The
+    problem has its limits and bounds on durations where they allow most.
+
+    Notes
+    -----
+    Branch and bound over the durations: the mean speed between way-points bounds each of them
+    from below, and each box either holds no durations so short or has a worst ratio above 1,
+    proved as for `breaks`.
+    """
+    q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
+    ball = Ball.between(q.lower, q.upper)
+    target = 1.0 + TOLERANCE
+    low = _least_durations(problem, q) / target * (1.0 - FEW_ROUNDINGS)
+    low = np.maximum(low, problem.duration_lower / target * (1.0 - FEW_ROUNDINGS))
+    total *= 1.0 + FEW_ROUNDINGS
+    if low.sum() > total:
+        return True
+    # Where coefficients are free, durations alone have no ratios to bound; of more than eight
+    # segments, splitting boxes cannot come to an end in time.
+    if problem.curve.free or not (low > 0.0).all() or problem.segments > 8:
+        return False
+    todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
+    for _ in range(boxes):
+        if not todo:
+            return True
+        least, most = todo.pop()
+        # No duration is longer than what the total leaves beside the least of all others.
+        most = np.minimum(most, total - (least.sum() - least))
+        if (most < least).any():
+            continue
+        bound = bound_ratio(problem, least, most, ball)
+        if bound.value > target:
+            continue
+        widths = most / least
+        k = int(np.argmax(widths))
+        if widths[k] <= 1.0 + 1e-6:
+            return False
+        cut = float(np.sqrt(least[k] * most[k]))
+        upper, lower = most.copy(), least.copy()
+        upper[k] = lower[k] = cut
+        todo += [(least, upper), (lower, most)]
+    return None if todo else True
+
+
+def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:
+    """Durations below which the mean speed between two way-points exceeds a velocity limit."""
+    least = np.zeros(problem.segments)
+    breaks = problem.curve.waypoint_breaks
+    most = problem.limits.widest[:, 0]
+    speed = np.where(most > 0.0, most, np.inf)
+    for w, ways in enumerate(waypoints.steps[0]):
+        if breaks[w + 1] - breaks[w] == 1:
+            least[breaks[w]] = float((ways / speed).max())
+    return least

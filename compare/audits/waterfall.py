@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
@@ -66,7 +68,8 @@ def _known(name: str, solution: Solution, note: str = "") -> Step:
     notes = [n for n in (note, solution.why, *routes(solution)) if n]
     if solution.infimum is not None:
         notes.append("approached, not attained")
-    low, best, ends = solution.lower_bound, solution.best, {}
+    low, best = solution.lower_bound, solution.best
+    ends: dict[str, Any] = {}
     if low is not None:
         notes.append(f"proved, gap {(best - low) / best:.1e}")
         ends = {"low": low, "high": best}
