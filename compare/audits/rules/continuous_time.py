@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -61,17 +61,15 @@ _ELSEWHERE = "elsewhere"
 )
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
+    judges: dict[str, Callable[[Study, StatementClaim], Iterator[Finding]]]
+    judges = {"within_limits": _limits_statement, "continuous": _continuity, "jumps": _said_to_jump}
     for claim in study.claims:
         if isinstance(claim, RowClaim):
             yield from _limits(study, claim)
             yield from _jumps(study, claim)
             yield from _used_up(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "within_limits":
-            yield from _limits_statement(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "continuous":
-            yield from _continuity(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "jumps":
-            yield from _said_to_jump(study, claim)
+        elif isinstance(claim, StatementClaim) and claim.checks in judges:
+            yield from judges[claim.checks](study, claim)
 
 
 @rule_group()  # it finds what TG201 finds

@@ -48,13 +48,7 @@ from ..study import Study
 from .one_way import judge_one_way
 from .rule_group import Explained, rule_group
 
-_PATHS = {
-    False: "each segment as long as its slowest joint needs",
-    True: "all joints on a straight line in each segment",
-}
-"""How the joints go together, by whether they stay on a straight line."""
 _Profiled = TotalTimeClaim | PhasesClaim
-_Judge = Callable[["_Asked"], Finding]
 
 
 def total_time(motion: ProfileMotion) -> list[float]:
@@ -124,7 +118,7 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
     yield from judge_one_way(study)
     for claim in study.claims:
         of: _Profiled
-        judge: _Judge
+        judge: Callable[[_Asked], Finding]
         if isinstance(claim, TotalTimeClaim) and claim.profile is not None:
             of, judge = claim, _total_beside
         elif isinstance(claim, PhasesClaim):
@@ -235,7 +229,9 @@ def _total_beside(asked: _Asked) -> Finding:
     # The closed forms grow with the way and fall with the limits: two of them enclose all others.
     enclosed = asked.resting and asked.profile in RESTING
     if enclosed:
-        how = f"from rest to rest, {_PATHS[straight]},"
+        joints = "each segment as long as its slowest joint needs"
+        joints = "all joints on a straight line in each segment" if straight else joints
+        how = f"from rest to rest, {joints},"
         plain, fits = _fitted(asked, number, straight)
         if plain == 0.0 < number.value:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "at rest"
