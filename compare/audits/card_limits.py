@@ -124,8 +124,7 @@ def _within(study: Study, own: Sequence[RowClaim]) -> str:
     cut, ratio, row, worst = max(found, key=lambda one: one[:2])
     how = "if digits were cut off" if cut else "within rounding"
     where = "" if len(own) == 1 or not cut else f", those in {place(row)}"
-    # 1.01: ratio to a limit at the printed digits from which on a card gives it: below, digits end
-    # there.
+    # Below one per cent the printed digits themselves end.
     if worst is None or ratio < 1.01 or worst.joint is None:
         return f"{where} {how}"
     share = 100 * (ratio - 1)

@@ -82,9 +82,6 @@ class CaseAudit(InNotebooks):
     day: date | None = None
     """Date of the audit; by default the day on which its document is made."""
 
-    made_waterfalls: tuple[Waterfall, ...] | None = None
-    """Waterfalls made by hand; otherwise `waterfalls` computes them."""
-
     @property
     def draft(self) -> bool:
         """Whether the case is an author's draft, for which the audit lists what to change."""
@@ -93,8 +90,6 @@ class CaseAudit(InNotebooks):
     @cached_property
     def waterfalls(self) -> tuple[Waterfall, ...]:
         """Where the time goes, for each problem and reading."""
-        if self.made_waterfalls is not None:
-            return self.made_waterfalls
         return waterfalls(self.study) if self.study.has_problems else ()
 
     @cached_property

@@ -152,7 +152,7 @@ class _Trial:
         slips.sort(key=lambda slip: (slip.slips, slip.share))
         group = next(g for g in self.groups if finding.rule in g.rules)
         found = []
-        # 400: changes of digits alone that are put to the rule which found the contradiction.
+        # Each change is put to the rule that found the contradiction, the smallest first.
         for slip in slips[:400]:
             try:
                 changed = self.changed(slip)
@@ -309,8 +309,7 @@ def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]
     seen: Counter[str] = Counter()
     for slip, reached in tried:
         seen[slip.kind] += 1
-        # 6: changes of each kind that the rules judge, the likeliest first: judging one takes as
-        # long as judging the paper's own row.
+        # Judging one change takes as long as judging the paper's own row.
         if seen[slip.kind] <= 6:
             yield slip, reached
 

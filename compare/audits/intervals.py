@@ -103,10 +103,9 @@ class Intervals:
         found = self._by_document(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
-        # 1 / 3: of what is left of the budget, for one problem: later ones get their turn too.
-        share = self._left * (1 / 3)
-        # 0.1: allowances below which no further search is begun: it would prove nothing.
-        # 0.5: the same of a budget in seconds.
+        # A third of what is left, so that later problems get their turn too. With less than a tenth
+        # of an allowance, or half a second, a search would prove nothing.
+        share = self._left / 3
         if share < (0.1 if self._counted else 0.5):
             if self._left > 0:
                 left = "no boxes were" if self._counted else "no time was"
@@ -120,8 +119,7 @@ class Intervals:
             self._progress(f"certifying {called}, at most {amount}")
         began = time.monotonic()
         try:
-            # 1e-4: relative width that is asked for: far below the digits that papers print, and
-            # cheap to reach.
+            # This gap is far below the digits that papers print, and cheap to reach.
             answer = certify(problem, gap=1e-4, seconds=seconds, boxes=boxes, cache=self._cache)
         except TrajgapError:
             return None  # nothing limits its total

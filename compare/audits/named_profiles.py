@@ -141,7 +141,7 @@ def _to_plateau(
     velocity: float, acceleration: float, speed: float, sizes: Sizes
 ) -> tuple[list[Phase], float]:
     """Phases from a state to a speed that is kept, and their way."""
-    # 16.0 / 35.0: mean of the impulse 64 t³(1 − t)³ from 0 to 1; its largest value is 1.
+    # The impulse 64 t³(1 − t)³ has the mean 16/35 from 0 to 1, and its largest value is 1.
     jerk, phases, way = (16.0 / 35.0) * sizes.jerk, [], 0.0
 
     def impulse(end: float) -> None:
@@ -149,7 +149,7 @@ def _to_plateau(
         change = end - acceleration
         time = abs(change) / jerk
         phases.append(Phase(time, acceleration, copysign(jerk, change)))
-        # 5.0 / 36.0: way in the time 1 while such an impulse raises the acceleration from 0 to 1.
+        # While such an impulse raises the acceleration from 0 to 1 in the time 1, the way is 5/36.
         way += time * (velocity + time * (acceleration / 2.0 + change * (5.0 / 36.0)))
         velocity += time * (acceleration + end) / 2.0
         acceleration = end

@@ -79,15 +79,13 @@ def _jump(
     if not len(gaps):
         return None
     at = int(np.argmax(gaps))
-    # 0.01: share of a number by which its values for numerically equal inputs must differ to be
-    # called a jump.
+    # A jump: values for numerically equal inputs differ by more than one per cent.
     least = 0.01 * abs(found[0][0])
     if gaps[at] <= max(0.5 * gaps.sum(), least):
         return None
     low, high = found[at : at + 2]
     middle = (low[0] + high[0]) / 2.0
-    # 40: times that two inputs are brought halfway together: what they leave of each other is
-    # rounding.
+    # Brought halfway together forty times, two inputs differ by rounding only.
     for _ in range(40):
         between = low[1].asked(low[1].question.halfway(high[1].question))
         if between is None:

@@ -114,7 +114,7 @@ class ProfileMotion:
 
     def near_to(self, question: ProfileQuestion) -> ProfileMotion:
         """The same for other numbers, or for those nearest to them on the way from its own."""
-        # 6: times that numbers at which no profile exists are brought halfway to the printed ones.
+        # Numbers at which no profile exists are brought halfway to the printed ones, a few times.
         for _ in range(6):
             one = self.asked(question)
             if one is not None:

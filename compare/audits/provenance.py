@@ -85,7 +85,7 @@ def commit() -> str | Why:
 
 
 def _git(folder: Path, *arguments: str) -> str:
-    # 5: time that git gets to name the commit; it needs a hundredth of that.
+    # Git needs a hundredth of this time to name the commit.
     done = subprocess.run(
         ("git", "-C", str(folder), *arguments),
         capture_output=True,

@@ -174,8 +174,8 @@ def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> t
     draft = _Draft(study)
     tried: Counter[str] = Counter()
     found = first
-    # 5: audits of the edited draft at most: durations change what rests on them in one, a sentence
-    # that no number mends is left out in the next, and one more shows that nothing is left.
+    # Durations change what rests on them in one audit, a sentence that no number mends is left out
+    # in the next, and one more shows that nothing is left; two more are in reserve.
     for _ in range(5):
         pressing = _pressing(draft.case, *found)
         before = dict(draft.edits)
@@ -416,8 +416,8 @@ def _print(
     places = max(one.places for one in claim.durations)
     step = Decimal(1).scaleb(-max(places, 0))
     least = [Decimal(from_si(float(h), unit)).quantize(step, ROUND_CEILING) for h in durations]
-    # 20: units of the last digit by which rounded durations are lengthened at most until they keep
-    # the limits: rounding up alone nearly always does, because longer segments are slower ones.
+    # Rounding up alone nearly always keeps the limits, because longer segments are slower ones;
+    # else all durations are lengthened by further units of the last digit.
     for up in range(20):
         tried = [value + up * step for value in least]
         seconds = np.array([float(value) for value in tried]) / from_si(1.0, unit)

@@ -224,7 +224,7 @@ def of_rows(case: Case, claim: AnyClaim) -> Iterator[Slip]:
 
 def turns(spots: Sequence[Spot], joint: str, unit: str, radians: Sequence[float]) -> Iterator[Slip]:
     """Angles of a joint a full turn further or less far."""
-    # 12: decimals of a full turn in radians: as many as a double-precision angle holds.
+    # A double-precision angle in radians holds twelve decimals of a turn.
     turn = Decimal(str(round(from_si(tau, unit), 12)))
     for w, spot in enumerate(spots):
         for sign in (-1, 1):

@@ -183,8 +183,7 @@ class InstancesResult:
             return float(known[0]), float(known[0])
         from scipy.stats import bootstrap  # half a second, and few need it
 
-        # 1000: samples of instances behind an interval: its ends move by about a tenth of its
-        # width.
+        # With so many resamples the ends move by about a tenth of the width.
         found = bootstrap(
             (known,), np.median, n_resamples=1000, method="percentile", rng=0
         ).confidence_interval

@@ -303,8 +303,7 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if not np.isfinite(limit):
                     continue
                 reach = box_reach(row, top)
-                # 0.01: share of a limit above which rounding blurs a peak too much to call the
-                # limit reached.
+                # Rounding by more than one per cent blurs a peak too much to call a limit reached.
                 if abs(abs(top.value) - limit) <= reach <= 0.01 * limit:
                     label = problem.joints[top.joint]
                     value, around = (

@@ -93,7 +93,7 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             for j, label in enumerate(problem.joints)
             if label != claim.joint
         )
-        # 0.01: share by which a row may miss the limits of another and still be said to fit it.
+        # Within one per cent a row is said to fit the limits of another.
         if best <= 0.01:
             yield row.finding(
                 "TG108",
@@ -117,7 +117,7 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
     rows = [c for c in study.case.claims if isinstance(c, DurationsClaim)]
     for first, second in combinations(rows, 2):
         texts = [[d.text for d in c.durations] for c in (first, second)]
-        # 3: durations that two rows need in common before equal digits are worth a word.
+        # Two equal durations may be equal by chance.
         if len(texts[0]) < 3 or texts[0] != texts[1] or len(set(texts[0])) == 1:
             continue
         tables = [set(doubted(study, [one])) for one in (first, second)]

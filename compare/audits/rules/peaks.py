@@ -235,8 +235,7 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     exact = one.around
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed as {one.printed}"
     room = ""
-    # 0.05: share of a peak above which the room that digits leave is said: what then fits tells
-    # little.
+    # What fits where digits leave more than 5 % of room tells little.
     if one.exact and one.reach > 0.05 * one.exact:
         room = f", which allows {100 * one.reach / one.exact:.2g} % either way"
     norm = "" if one.norm is None else _of_norm(one.norm)

@@ -61,7 +61,7 @@ def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
         if first.algorithm == second.algorithm or not rows[0] or len(rows[0]) != len(rows[1]):
             continue
         printed = [[_all_digits(claim) for claim in table] for table in rows]
-        # 4: numbers that a table needs before two tables alike are worth a word.
+        # Fewer than four numbers may be alike by chance.
         if sum(len(row) for row in printed[0]) >= 4 and printed[0] == printed[1]:
             yield first, second
 
