@@ -130,7 +130,7 @@ def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]
 def _explanation(causes: Sequence[Cause], room: int) -> str | None:
     """The most charitable explanation of the gravest cause that has one, if there is room."""
     for cause in causes:
-        for explanation in cause.explanations[:1]:
+        for explanation in [e for e in cause.explanations if e.settles][:1]:
             plain = explanation.change
             called = f"A possible explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.

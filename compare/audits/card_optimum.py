@@ -18,6 +18,7 @@ from ..documents import (
     count_words,
     ranged,
 )
+from .amounts import percent, seconds
 from .card_limits import FEW
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
@@ -128,7 +129,7 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     rows = [PrintedRow(study, c, p) for c in claims for p in main if c.problem in (None, p.problem)]
     above = {row.problem: above_shortest(row) for row in rows}
     # From a hundredth of a percent on, as the claims do.
-    longer = [f"{100 * more:.2g} %" for more in above.values() if more > 1e-4]
+    longer = [percent(more, ".2g") for more in above.values() if more > 1e-4]
     if len(longer) > 1:
         return f" The algorithm's totals are {' and '.join(longer)} above the shortest totals."
     return f" One total of the algorithm is {longer[0]} above the shortest." if longer else ""
@@ -324,7 +325,7 @@ def _span(solution: Solution) -> str:
     """An optimum, or the interval that is proved to hold it where its ends print differently."""
     low = solution.best if solution.lower_bound is None else solution.lower_bound
     if f"{low:.4f}" == f"{solution.best:.4f}":
-        return f"{low:.4f} s"
+        return seconds(low, ".4f")
     ends = shown_bound(low, "lower", places=4), shown_bound(solution.best, "upper", places=4)
     return f"{' to '.join(ends)} s"
 

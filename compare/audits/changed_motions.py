@@ -10,7 +10,7 @@ import numpy as np
 
 from ...problem import QUANTITIES, Array, Limits, Printed, Problem, Quantity, evaluate
 from ...problem.cases import AnyClaim, Claim, PeakClaim, motions_of
-from ..documents import Finding
+from ..documents import Explanation, Finding
 from .printed_row import PrintedRow
 from .rules import box_reach, largest
 from .slips import Slip, durations, exchanges, limits, misprints, of_rows, turns, values, waypoints
@@ -23,19 +23,20 @@ shape (changes, joints, 3)."""
 
 def changes_of_motion(
     row: PrintedRow[RowClaim], finding: Finding, claim: AnyClaim
-) -> list[tuple[Slip, bool]]:
+) -> tuple[list[tuple[Slip, bool]], Explanation | None]:
     """Changes that may settle what is said of a motion, and whether they reach a limit.
 
-    The likeliest first.
+    The likeliest first; and what only brings the motion nearer to its limits.
     """
     problem, worst = row.posed(), row.check.worst
     if worst is None or worst.quantity in ("curve", "duration"):
-        return []
+        return [], None
     if problem.limits.uneven or problem.curve.free:
-        return []
+        return [], None
     printed = _peaks(problem, row.durations.value[None])
     before = float(_ratios(printed, problem.limits.derivatives).max())
     ranked: list[tuple[tuple[int, bool, int, float], Slip]] = []
+    best: tuple[float, Slip] | None = None
     room = _room(row)
     least = max(1 + room, before if finding.rule != "TG201" else 0.0)
     off = int(_offs(row, problem, printed, room)[0])
@@ -51,9 +52,20 @@ def changes_of_motion(
             telling = far < off or not away or slip.share <= 1.5
             if ratio <= least and far <= most and telling and not _breaks_sum(row.claim, slip):
                 ranked.append(((int(far), away, slip.slips, slip.share), slip))
+            elif slip.share == 1.0 and (best is None or ratio < best[0]):
+                best = float(ratio), slip  # an exchange or a turn
     ranked += _other_values(row, claim, problem, printed[0], room)
     ranked.sort(key=lambda one: one[0])
-    return [(slip, not key[1]) for key, slip in ranked]
+    nearer = None
+    # Where less than a tenth of the excess goes, nothing is explained.
+    if finding.rule == "TG201" and best is not None and best[0] - 1 <= 0.9 * (before - 1):
+        nearer = Explanation(
+            change=best[1].change,
+            effect=f"Then the largest ratio to a limit falls from {before:.4g} to {best[0]:.4g}, "
+            "and a limit is still broken.",
+            settles=False,
+        )
+    return [(slip, not key[1]) for key, slip in ranked], nearer
 
 
 def _ratios(peaks: Array, limits: Array) -> Array:

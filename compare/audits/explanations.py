@@ -241,7 +241,8 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     """Misprints with which a finding would not stand, those that explain most first.
 
     First come those that explain as much as the best with as few slips, while they are few, then
-    the best of each other kind that settles as much.
+    the best of each other kind that settles as much. Where nothing settles the finding, it is what
+    would bring a motion nearer to its limits.
 
     Parameters
     ----------
@@ -258,8 +259,9 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     if (finding.rule, finding.claim) not in before:
         return []  # it warns, and contradicts nothing
     tried: list[tuple[Slip, bool]] = []
+    nearer = None
     if row is not None and pair in study.pairs:
-        tried = changes_of_motion(PrintedRow(study, row, pair), finding, claim)
+        tried, nearer = changes_of_motion(PrintedRow(study, row, pair), finding, claim)
     elif finding.rule in _OF_DIGITS:
         tried = [(slip, False) for slip in trial.of_digits()]
     judged = [
@@ -269,7 +271,7 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
         if one is not None
     ]
     if not judged:
-        return []
+        return [] if nearer is None else [nearer]
     judged.sort(key=lambda one: one.rank)
     first = judged[0]
     alike = [one for one in judged if one.rank == first.rank]

@@ -26,6 +26,7 @@ from ..documents import (
     enumerated,
     known,
 )
+from .amounts import seconds
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
 from .own_result import bare_totals, own_result
@@ -208,8 +209,8 @@ def _procedure(study: Study, pair: Pair) -> Step:
     if answer.ranges:
         low, high = answer.ranges[0].lowest, answer.ranges[0].highest
         note += (
-            f"; the range holds while each joint stays within {answer.ranges[0].slack:g} s of its "
-            "optimum"
+            f"; the range holds while each joint stays within "
+            f"{seconds(answer.ranges[0].slack, 'g')} of its optimum"
         )
     return Step(
         name=name, time=answer.total_time, low=low, high=high, evidence=answer.evidence, note=note

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ....problem import Case
 from ...documents import Basis, Finding, noted
+from ..amounts import percent
 from ..study import Study
 from .rule_group import INFORMS, Explained, finding, rule_group
 
@@ -168,7 +169,7 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
 
 def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
     """What a comparison came to, in sentences; its problems are called as the case calls them."""
-    what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
+    what = f"at least {percent(known.advantage, '.4g')} shorter" if known.advantage else "shorter"
     runs = known.listed[0].shown.runs
     yield (
         f"A committed study ran both on {known.on}, with {known.budget:,} evaluations per run and "
@@ -257,4 +258,4 @@ def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
 
 
 def _percent(share: float | None) -> str:
-    return "an unknown share" if share is None else f"{100 * share:.3g} %"
+    return "an unknown share" if share is None else percent(share)

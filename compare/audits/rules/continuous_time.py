@@ -9,6 +9,7 @@ import numpy as np
 from ....problem import QUANTITIES, Verdict
 from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
+from ..amounts import seconds
 from ..digit_ranges import below_certified
 from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
 from ..printed_row import PrintedRow, named_rows, printed_rows
@@ -120,7 +121,7 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             continue
         tops, sizes = largest_of_each_kind(velocity), jumps_shown(velocity)
         most = " and ".join(
-            f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
+            f"in joint {top.joint} at t = {seconds(top.time)} by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
         )
         yield row.finding(
@@ -224,7 +225,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         elif jumps:
             largest_ones = " and ".join(
-                f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
+                f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {seconds(top.time)} by "
                 f"{jump_shown(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
@@ -271,7 +272,7 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
             most = " and ".join(
-                f"at t = {top.time:.6g} s by {jump_shown(row, top)}"
+                f"at t = {seconds(top.time)} by {jump_shown(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind = ClaimVerdict.SUPPORTED, "jumps"

@@ -24,6 +24,7 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
+from ..amounts import seconds
 from ..digit_ranges import below_certified
 from ..fixed_ratios import at_ratios, off_ratios, optimum_called, planned_apart
 from ..printed_row import PrintedRow, named_rows, printed_rows
@@ -114,7 +115,7 @@ def _distance(
     said = [
         f"Printed {shown} {set_beside(distance)} the "
         f"{optimum_called(solution.problem, reference.evidence)}{which}, "
-        f"{reference.upper:.6f} s{_bounded(reference)}."
+        f"{seconds(reference.upper, '.6f')}{_bounded(reference)}."
     ]
     minimised = other_objective(row.study.case, claim)
     informs = minimised is not None and distance.lowest > 0
@@ -122,7 +123,7 @@ def _distance(
         said = [
             f"The printed {shown} was not minimised for time alone ({minimised}); for information, "
             f"the shortest motion{which}{at_ratios(solution.problem)} takes "
-            f"{reference.upper:.6f} s, {reference.evidence}{_bounded(reference)}."
+            f"{seconds(reference.upper, '.6f')}, {reference.evidence}{_bounded(reference)}."
         ]
     timed = not isinstance(claim, TotalTimeClaim) and row.unmoved is None
     if timed and not informs:
@@ -130,7 +131,7 @@ def _distance(
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
             said.append(
-                f"Feasible time of the printed durations {verdict.feasible_time:.6f} s "
+                f"Feasible time of the printed durations {seconds(verdict.feasible_time, '.6f')} "
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
@@ -152,7 +153,7 @@ def _distance(
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
         printed=shown,
-        computed=f"{reference.upper:.6f} s",
+        computed=seconds(reference.upper, ".6f"),
         gap=distance,
         decides=False,
     )
@@ -230,8 +231,13 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
     message = (
         f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
         f"gives {ranged(wide.lowest, wide.highest, '.4f')} s while every joint stays within "
-        f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at these optima"
-        + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
+        f"{seconds(wide.slack, 'g')} of its optimum, and {seconds(answer.total_time, '.4f')} at "
+        "these optima"
+        + (
+            f" (free rescaling of that motion: {seconds(tight, '.4f')})"
+            if tight is not None
+            else ""
+        )
         + f"; the printed {shown} lies {'inside' if inside else 'outside'} that range."
     )
     yield row.finding(
@@ -317,7 +323,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     distance = gap(interval, reference, feasible=False)
     sides.open.append(
         f"{name}: printed {shown} {set_beside(distance)} the "
-        f"{optimum_called(solution.problem, solution.evidence)} {solution.best:.6f} s, "
+        f"{optimum_called(solution.problem, solution.evidence)} {seconds(solution.best, '.6f')}, "
         "and no proof decides whether rounding explains the difference"
     )
 

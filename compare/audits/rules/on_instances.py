@@ -10,6 +10,7 @@ import numpy as np
 from ....problem.cases import ConvergenceClaim
 from ...documents import Basis, Effect, Finding, Procedure, quoted, ranged
 from ...gaps import SETTLED
+from ..amounts import percent, seconds
 from ..instances import (
     MIDDLE,
     InstancesResult,
@@ -70,7 +71,7 @@ def placed(result: InstancesResult) -> str:
         if reading not in inside:
             sides.setdefault(_aside(result, reading), []).append(reading)
     said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
-    middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
+    middle = f"the middle {percent(MIDDLE, 'g')} of the reductions of one run against one run"
     parts = []
     if inside:
         parts.append(f"usual under {_quoted(result, inside)}(within {middle})")
@@ -155,14 +156,14 @@ def _under(result: InstancesResult, reading: str) -> Finding:
         )
         parts.append(
             f"The printed reduction of {_printed(result)} is {usual} here: it lies {inside} the "
-            f"middle {100 * MIDDLE:g} % of the reductions, and {100 * least:.3g} % of them are at "
+            f"middle {percent(MIDDLE, 'g')} of the reductions, and {percent(least)} of them are at "
             "least as large."
         )
     steps = ", ".join(f"{step:g}" for step in block.lengths)
     parts += [
         f"Reductions of one run against one run on {result.instances} instances, at steps of "
         f"{steps} {block.unit}, with {block.runs} runs each: {both}.",
-        f"The paper's procedure is faster in {100 * both.shorter:.3g} % of the pairs.",
+        f"The paper's procedure is faster in {percent(both.shorter)} of the pairs.",
     ]
     low, high = result.median_interval(reading, Effect.BOTH)
     if np.isfinite(low):
@@ -202,8 +203,8 @@ def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
         low, middle, high = np.quantile(totals, [0.0, 0.5, 1.0])
         which = "it is compared with" if route == 0 else "of the paper"
         yield (
-            f"The paper prints {printed}; the procedure {which} takes {middle:.3g} s at the median "
-            f"({ranged(low, high, '.3g')} s)."
+            f"The paper prints {printed}; the procedure {which} takes {seconds(middle, '.3g')} at "
+            f"the median ({ranged(low, high, '.3g')} s)."
         )
 
 
@@ -214,7 +215,7 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         shares.append(float((settled <= claim.iterations.value).mean()) if settled.size else 0.0)
     low, high = 100 * min(shares), 100 * max(shares)
     each = ", ".join(
-        f"{100 * share:.3g} % under {quoted(reading, result.labels)}"
+        f"{percent(share)} under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
     return _informing(
@@ -222,7 +223,7 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         "convergence",
         f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
         f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its "
-        f"best total is then within {100 * SETTLED:g} % of the final one ({each}).",
+        f"best total is then within {percent(SETTLED, 'g')} of the final one ({each}).",
         "The instances are not the paper's.",
         printed=f"{claim.iterations} iterations",
         computed=f"{ranged(low, high, '.3g')} % of the runs",

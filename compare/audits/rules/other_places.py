@@ -9,6 +9,7 @@ from math import inf, isfinite, log
 from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
+from ..amounts import percent
 from ..printed_row import PrintedRow, printed_rows
 from ..stated import RowClaim, called
 from ..study import Study
@@ -62,8 +63,8 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                 distance, motion, other = min(found, key=lambda one: one[0])
                 whose = "" if other is None else f", joint {other}"
                 said.append(
-                    f"{number} lies {100 * mine.distance:+.2g} % from the peak of its own motion "
-                    f"and {100 * distance:.2g} % from that of {called(motion)}{whose}"
+                    f"{number} lies {percent(mine.distance, '+.2g')} from the peak of its own "
+                    f"motion and {percent(distance, '.2g')} from that of {called(motion)}{whose}"
                 )
         if said:
             yield row.finding(
@@ -99,8 +100,8 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
                 "TG108",
                 "rows",
                 f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
-                f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
-                f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
+                f"to be stretched by {percent(own, '.2g')} for its own limits and fit those of "
+                f"joint {joint} within {percent(best, '.2g')}, as if rows had been exchanged in "
                 "print.",
                 decides=False,
                 basis=Basis.CHECK,

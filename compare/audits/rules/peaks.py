@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from ....problem import (
 )
 from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..amounts import percent
 from ..printed_row import PrintedRow, printed_rows
 from ..rounding import ROUNDING, Agreement
 from ..stated import DERIVATIVES, place
@@ -142,9 +143,9 @@ def beside(
         found = of(exact, max(reach, near), max(2 * reach, far), least)
     if joint is not None or len(tops) == 1 or found.fits:
         return found
-    whole = largest_norm(row, order)
+    whole, reach = largest_norm(row, order)
     least = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
-    return replace(found, norm=of(whole.largest, whole.reach, 2 * whole.reach, least))
+    return replace(found, norm=of(whole, reach, 2 * reach, least))
 
 
 def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
@@ -160,32 +161,19 @@ def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
     return row.once("samples", compute, order)
 
 
-@dataclass(frozen=True)
-class Norm:
-    """Largest norm of a derivative over the joints.
+def largest_norm(row: PrintedRow[Claim], order: int) -> tuple[float, float]:
+    """Largest norm of a derivative over the joints, and its first-order change by rounding.
 
-    Attributes
-    ----------
-    largest : float
-        At the printed durations and way-points: the true maximum where pieces are polynomials in
-        time, else the largest of `_NORM_PLACES` values a piece, refined.
-    reach : float
-        Its first-order change over all values that round to the printed digits.
+    It is the true maximum where pieces are polynomials in time, else the largest of `_NORM_PLACES`
+    values a piece, refined.
     """
-
-    largest: float
-    reach: float
-
-
-def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
-    """Largest norm of a derivative on a printed motion."""
     motion = row.motion
     top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))
     values = _norm_values(motion, piece, order, np.array([s]))[:, 0]
     points = [Extremum(j, piece, order, s, 0.0, float(v)) for j, v in enumerate(values)]
     # The norm's gradient weighs each joint's by its share; at the top its place does not count.
     share = values / top if top else np.zeros_like(values)
-    return Norm(top, _reach(row, points, share))
+    return top, _reach(row, points, share)
 
 
 def _norm_values(trajectory: Trajectory, piece: int, order: int, places: Array) -> Array:
@@ -237,9 +225,9 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     room = ""
     # What fits where digits leave more than 5 % of room tells little.
     if one.exact and one.reach > 0.05 * one.exact:
-        room = f", which allows {100 * one.reach / one.exact:.2g} % either way"
+        room = f", which allows {percent(one.reach / one.exact, '.2g')} either way"
     norm = "" if one.norm is None else _of_norm(one.norm)
-    away = f"{100 * one.distance:+.2g} %"
+    away = percent(one.distance, "+.2g")
     return (
         said
         + {

@@ -8,7 +8,7 @@ from itertools import product
 from math import sqrt
 
 from ....problem import Printed
-from ....problem.cases import Cartesian, Statement, StatementClaim
+from ....problem.cases import Cartesian, StatementClaim
 from ....problem.robots import Chain, Equation, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import meet
@@ -58,7 +58,14 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     if own is None:
         return _finding(claim, "not printed", [f"No angles of joint {claim.joint} are printed."])
     if claim.joint is not None and statement.unit("position") is None:
-        return _in_other_units(claim, statement, own)
+        listed = ", ".join(dict.fromkeys(statement.units.position or ()))
+        said = [
+            f"Joints are printed in different units ({listed}), so it cannot be said which of them "
+            "varies more.",
+            f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed "
+            "unit).",
+        ]
+        return _finding(claim, "other units", said, own=own)
     shown = " and ".join(
         f"{_middle(least, most):.2f} of joint {label}" for label, (least, most) in ranges.items()
     )
@@ -83,20 +90,6 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     elif not missing and ranges and all(most <= own[0] for _, most in ranges.values()):
         verdict = ClaimVerdict.SUPPORTED
     return _finding(claim, kind, [*said, *aside], verdict, own)
-
-
-def _in_other_units(
-    claim: StatementClaim, statement: Statement, own: tuple[Fraction, Fraction]
-) -> Finding:
-    """Nothing decided: joints in different units have no common measure of how much they vary."""
-    units = statement.units.position
-    listed = ", ".join(dict.fromkeys(units)) if isinstance(units, tuple) else str(units)
-    said = [
-        f"Joints are printed in different units ({listed}), so it cannot be said which of them "
-        "varies more.",
-        f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed unit).",
-    ]
-    return _finding(claim, "other units", said, own=own)
 
 
 def _range(numbers: list[Printed]) -> tuple[Fraction, Fraction]:

@@ -23,6 +23,7 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
+from ..amounts import percent, seconds
 from ..named_profiles import (
     ALGORITHM,
     NOT_SHORTEST,
@@ -206,7 +207,7 @@ def _impossible(asked: _Asked) -> Finding:
     if turned.every():
         totals = turned.totals
         if totals.meets(_ends(row.time(claim.value))):
-            said = f" With {text} {unit} it takes {totals.plain:.6g} s, which fits."
+            said = f" With {text} {unit} it takes {seconds(totals.plain)}, which fits."
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT,
@@ -252,18 +253,19 @@ def _total_beside(asked: _Asked) -> Finding:
             said = "lies within its jump"
     if verdict is ClaimVerdict.SUPPORTED and not fits:
         verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
-        away = f"{100 * abs(number.value / plain - 1):.2f} % " if plain else ""
+        away = f"{percent(abs(number.value / plain - 1), '.2f')} " if plain else ""
         said = f"is {away}{'shorter' if number.value < plain else 'longer'}"
     return _found(
         asked,
         verdict,
         kind,
-        f"The {asked.called} {how} takes {plain:.6g} s; the printed {claim.value} {unit} {said}.",
+        f"The {asked.called} {how} takes {seconds(plain)}; the printed {claim.value} {unit} "
+        f"{said}.",
         *notes,
         # Of all that rounds to the digits: enclosed, or tried at their ends.
         basis=Basis.CHECK if enclosed else Basis.COMPUTED,
         printed=f"{claim.value} {unit}",
-        computed=f"{plain:.6g} s",
+        computed=seconds(plain),
     )
 
 
@@ -284,7 +286,8 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
     if totals.jump is not None:
         low, high = totals.jump
         notes.append(
-            f"Within the rounding of the printed digits it jumps from {low:.6g} s to {high:.6g} s."
+            f"Within the rounding of the printed digits it jumps from {seconds(low)} to "
+            f"{seconds(high)}."
         )
     every = asked.every()
     if every and every[0].starts_outside:
@@ -296,7 +299,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
         best = asked.range(total_time, "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
-        notes.append(f"The shortest s-curve profile takes {best.plain:.6g} s{beside}.")
+        notes.append(f"The shortest s-curve profile takes {seconds(best.plain)}{beside}.")
     return tuple(notes)
 
 
@@ -345,7 +348,7 @@ def _phases_beside(asked: _Asked) -> Finding:
         asked,
         verdict,
         kind,
-        f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases{ramps} of "
+        f"The {asked.called} {asked.between} takes {seconds(totals.plain)} in phases{ramps} of "
         f"{shown} s; the printed {digits} {unit} {how}.",
         *_notes(asked, totals),
         printed=f"{digits} {unit}",

@@ -31,6 +31,7 @@ from ...gaps import (
     share_of_pairs,
     spread,
 )
+from ..amounts import percent, seconds
 from ..kept_replays import Replays
 from ..printed_row import PrintedRow, rows_under
 from ..replay_settings import LISTED
@@ -96,10 +97,6 @@ def _totals(runs: Replays) -> Array:
     return np.array([r.reported_time for r in runs])
 
 
-def _percent(share: float) -> str:
-    return f"{100 * share:.3g} %"
-
-
 def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
     """How likely one run against one run shows the printed improvement, and at which settings."""
     names = [study.case.claim(i).algorithm for i in (claim.slower, claim.faster)]
@@ -128,26 +125,26 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         said = [
             f"In {study.options.seeds} independent runs each, {one} reaches {spread(slower)} and "
             f"{other} reaches {spread(faster)} under the listed choices.",
-            f"One run of {other} is at least {100 * least:.4g} % shorter than one of {one} "
-            f"with probability {_percent(shows)} ({sure}). For two runs of {one}, this probability "
-            f"is {_percent(luck)}.",
+            f"One run of {other} is at least {percent(least, '.4g')} shorter than one of {one} "
+            f"with probability {percent(shows)} ({sure}). For two runs of {one}, this probability "
+            f"is {percent(luck)}.",
         ]
         if len(each) > 1:
             said.append(
                 f"With everything that the text leaves open varied together ({len(totals[0])} and "
-                f"{len(totals[1])} settings), the probability is at most {_percent(each[most])}: "
+                f"{len(totals[1])} settings), the probability is at most {percent(each[most])}: "
                 f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
         found = _found(study, "TG401", claim, pair, f"{claim.percent} %")
-        yield found("runs", *said, computed=f"median {100 * median:.3g} %")
+        yield found("runs", *said, computed=f"median {percent(median)}")
 
 
 def interval_words(low: float, high: float) -> str:
     """A 95 % interval of a probability, or that there is none."""
     if np.isnan(low) or np.isnan(high):
         return "too few runs with an answer for an interval"
-    return f"95 % interval {_percent(low)} to {_percent(high)}"
+    return f"95 % interval {percent(low)} to {percent(high)}"
 
 
 def _at(name: str, setting: str) -> str:
@@ -167,7 +164,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
         shorter = share_of_pairs(totals[other], totals[own], 0.0)
         low, high = share_interval(totals[other], totals[own], 0.0)
         settled = "; ".join(
-            f"{name} stays within {100 * tolerance:g} % of its final total from iteration "
+            f"{name} stays within {percent(tolerance, 'g')} of its final total from iteration "
             f"{int(np.median(_settled(found, tolerance)))} onwards (median)"
             for tolerance in _TOLERANCES
             for name, found in runs.items()
@@ -176,9 +173,9 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             "runs",
             f"In {seeds} independent runs each under the listed choices, {own} reaches "
             f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
-            f"of {own} is no longer than one of {other} with probability {_percent(shorter)} "
+            f"of {own} is no longer than one of {other} with probability {percent(shorter)} "
             f"({interval_words(low, high)}): {settled}.",
-            computed=f"shorter in {_percent(shorter)} of the pairs",
+            computed=f"shorter in {percent(shorter)} of the pairs",
         )
 
 
@@ -228,7 +225,7 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     yield (
         f"With everything that the text leaves open varied together ({len(medians)} settings), "
         f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; the nearest "
-        f"to the printed total is {medians[nearest]:.4f} s, with {nearest}."
+        f"to the printed total is {seconds(medians[nearest], '.4f')}, with {nearest}."
     )
     if inside:
         return
@@ -267,9 +264,9 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
                 name: float((_settled(one, tolerance) <= claim.iterations.value).mean())
                 for name, one in runs.items()
             }
-            share = f"{_percent(within[LISTED])}{'' if parts else ' of the runs'}"
-            parts.append(f"{share} lie within {100 * tolerance:g} %")
-            spans.append(f"{_percent(min(within.values()))} to {_percent(max(within.values()))}")
+            share = f"{percent(within[LISTED])}{'' if parts else ' of the runs'}"
+            parts.append(f"{share} lie within {percent(tolerance, 'g')}")
+            spans.append(f"{percent(min(within.values()))} to {percent(max(within.values()))}")
         varied = ""
         if len(runs) > 1:
             varied = (

@@ -131,8 +131,9 @@ def test_the_explanation_of_an_error_is_called_one() -> None:
     assert card.sentences[-1] == said
 
 
-# The effect has a shorter form before it is left out.
+# The effect has a shorter form before it is left out; what leaves a limit broken explains nothing.
 BRIEF = SWAPPED.model_copy(update={"effect": "Then all is well, whatever.", "brief": "So?"})
+PARTLY = SWAPPED.model_copy(update={"settles": False})
 
 
 @pytest.mark.parametrize(
@@ -146,6 +147,8 @@ BRIEF = SWAPPED.model_copy(update={"effect": "Then all is well, whatever.", "bri
         ((BRIEF,), 10, "Two columns may be swapped. Then all is well, whatever."),
         ((BRIEF,), 9, "A possible explanation: two columns may be swapped. So?"),
         ((BRIEF,), 6, "Two columns may be swapped. So?"),
+        ((PARTLY,), 20, None),
+        ((PARTLY, BRIEF), 6, "Two columns may be swapped. So?"),
     ],
 )
 def test_an_explanation_takes_the_room_that_is_left(
