@@ -185,16 +185,10 @@ def weigh(
     )
 
 
-Explained = Callable[[str, Finding], tuple[Explanation, ...]]
-"""From the root of a cause and its first finding to explanations that accuse nobody."""
-_AGAINST = (Severity.ERROR, Severity.WARNING)
-"""What a cause may weigh; what only informs has none."""
-_ON_WAYPOINTS = (Basis.ENCLOSURE, Basis.CHECK, Basis.COMPUTED, Basis.OPTIMUM)
-"""What is computed with a motion through the printed way-points."""
-
-
 def find_causes(
-    study: Study, findings: Iterable[Finding], explained: Explained
+    study: Study,
+    findings: Iterable[Finding],
+    explained: Callable[[str, Finding], tuple[Explanation, ...]],
 ) -> tuple[Cause, ...]:
     """Group findings that speak against something printed by what they follow from.
 
@@ -202,8 +196,13 @@ def find_causes(
     of one claim. A finding that follows from the root of another is listed under it.
 
     The gravest cause comes first.
+
+    Parameters
+    ----------
+    explained : callable
+        From the root of a cause and its first finding to explanations.
     """
-    against = [f for f in findings if f.severity in _AGAINST]
+    against = [f for f in findings if f.severity is not Severity.INFO]
     groups: dict[str, list[Finding]] = {}
     for f in against:
         groups.setdefault(_root(f), []).append(f)
@@ -305,10 +304,6 @@ def with_caveats(
     )
 
 
-_OF_MOTIONS = ("TG203", "TG208")
-"""Rules that set printed values of a motion beside the motion itself."""
-
-
 def _contradictions(findings: list[Finding]) -> dict[str, tuple[set[str], bool]]:
     """First message of each root, the claims on its sides, and whether it is about a motion."""
     heads: dict[str, Finding] = {}
@@ -318,7 +313,7 @@ def _contradictions(findings: list[Finding]) -> dict[str, tuple[set[str], bool]]
     for f in findings:
         if f.between:
             up = next((heads[r] for r in f.follows if r in heads), heads[_root(f)])
-            of_motions = up.rule in _OF_MOTIONS
+            of_motions = up.rule in ("TG203", "TG208")
             sides.setdefault(up.message, (set(), of_motions))[0].update(f.between)
     return sides
 
@@ -389,7 +384,12 @@ def _doubts(
 
 def _through_points(finding: Finding) -> bool:
     decided = finding.verdict in DECIDING and not finding.built
-    return decided and finding.basis in _ON_WAYPOINTS
+    return decided and finding.basis in (
+        Basis.ENCLOSURE,
+        Basis.CHECK,
+        Basis.COMPUTED,
+        Basis.OPTIMUM,
+    )
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
