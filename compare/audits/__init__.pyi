@@ -1,7 +1,7 @@
 from .card_errors import plainly as plainly
 from .case_audit import AuditReport as AuditReport, CaseAudit as CaseAudit, audit as audit
 from .fixed_ratios import at_ratios as at_ratios, planned_apart as planned_apart
-from .options import AuditOptions as AuditOptions
+from .intervals import AuditOptions as AuditOptions
 from .paper_runs import searched_for as searched_for
 from .printed_row import PrintedRow as PrintedRow, printed_rows as printed_rows
 from .provenance import certificate_files as certificate_files, package_version as package_version

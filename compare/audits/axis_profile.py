@@ -133,12 +133,11 @@ def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> Axi
         size = sizes.acceleration if velocity > 0.0 else sizes.braking
         return velocity**2 / (2.0 * size) if velocity else 0.0
 
-    if finish.position - start.position < _ramp(start, finish.velocity, sizes).at(inf).position - (
-        start.position
-    ):
+    ahead = finish.position - start.position
+    if ahead < _ramp(start, finish.velocity, sizes).at(inf).position - start.position:
         mirror = shortest_trapezoid(start.mirrored(), finish.mirrored(), sizes)
         return None if mirror is None else mirror.mirrored()
-    needed = finish.position - start.position + way(start.velocity) + way(-finish.velocity)
+    needed = ahead + way(start.velocity) + way(-finish.velocity)
     bend = 1.0 / (2.0 * sizes.acceleration) + 1.0 / (2.0 * sizes.braking)
     if not isfinite(bend):
         return None if needed > 0.0 else AxisProfile(start, ())

@@ -24,6 +24,7 @@ from .card_errors import plainly
 from .card_limits import limits_line
 from .card_optimum import on_doubted_points, optimum_line
 from .digit_ranges import implausible
+from .roots import AGAINST
 from .study import Study
 
 
@@ -74,7 +75,8 @@ def verdict_card(
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
     explanation = _explanation(causes, left)
     left -= count_words(explanation or "")
-    near = _near(runs, left)
+    said_of_runs = (str(runs[0]), runs[0].briefly) if runs else ()
+    near = next((one for one in said_of_runs if one and count_words(one) <= left), None)
     left -= count_words(near or "")
     if not more:
         warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
@@ -95,16 +97,12 @@ def verdict_card(
     )
 
 
-_AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-"""Words that are against a claim under every reading."""
-
-
 def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
     """Whether a cause that is no error speaks against its claim, as every reading does."""
     own, head = words.get(cause.claim or ""), cause.head
-    against = head is not None and head.verdict in _AGAINST
+    against = head is not None and head.verdict in AGAINST
     warns = cause.severity is Severity.WARNING
-    return warns and against and own is not None and own.verdict in _AGAINST
+    return warns and against and own is not None and own.verdict in AGAINST
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
@@ -113,12 +111,6 @@ def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
     claims = [study.case.claim(one) for one in affected]
     counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)
     return cause.rule == "TG104" and counted
-
-
-def _near(runs: Sequence[Reached], room: int) -> str | None:
-    """How near the paper's algorithm gets, if there is room."""
-    said = (str(runs[0]), runs[0].briefly) if runs else ()
-    return next((one for one in said if one and count_words(one) <= room), None)
 
 
 def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]:

@@ -73,13 +73,16 @@ def _plain(
         said, named = _not_optimal(case, head, cause, far)
         return (f"Called optimal in {_places(claim, also, case)}, but {said}.",), named
     where = _places(claim, also, case)
+    percent = isinstance(claim, ImprovementClaim) and claim.percent is not None
+    claimed = "the reduction" if percent else "the saving"
+    others = [place(case.claim(one)) for one in head.between if one != head.claim]
+    other = others[0] if others else "another place"
     printed, computed = head.printed or "", head.computed or ""
     sentence = {
         "TG101": f"{at_place(where)}, the durations add up to {computed}, not {printed}",
         "TG102": f"The longest durations {at_place(where)} do not follow from its rows",
-        "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
-        "TG105": f"{place(claim)} prints {printed} for a total that {_other(case, head)} gives as "
-        f"{computed}",
+        "TG103": f"From the printed totals {claimed} would be {computed}, not {printed}",
+        "TG105": f"{place(claim)} prints {printed} for a total that {other} gives as {computed}",
         "TG107": f"{where} has {computed}{f', not {printed}' if printed else ''}",
         "TG109": f"{where} prints {printed}, but the curve has {computed}",
         "TG201": f"The total {at_place(where)} is shorter than any motion within the limits"
@@ -146,7 +149,11 @@ def _whose(case: Case, head: Finding) -> str:
 
 def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:
     names = {t.id: t.where for t in case.tables}
-    shown = _joined([names.get(one, one) for one in tables])
+    places = [names.get(one, one) for one in tables]
+    heads = [p.partition(" ") for p in places]
+    shown = " and ".join(places)
+    if len({h for h, _, _ in heads}) == 1 and all(tail for _, _, tail in heads):
+        shown = f"{heads[0][0]}s {' and '.join(tail for _, _, tail in heads)}"
     numbers = sum(
         len(c.durations) + (c.total is not None)
         for c in case.table_claims(tables[0])
@@ -158,23 +165,3 @@ def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:
     if counted:
         return f"{said}, so the claimed {counted[0].percent} % cannot follow from them."
     return f"{said}, though they are said to differ."
-
-
-def _joined(places: Sequence[str]) -> str:
-    """Places in one phrase: "Table 2" and "Table 3" are "Tables 2 and 3"."""
-    heads = [p.partition(" ") for p in places]
-    if len({h for h, _, _ in heads}) == 1 and all(tail for _, _, tail in heads):
-        return f"{heads[0][0]}s {' and '.join(tail for _, _, tail in heads)}"
-    return " and ".join(places)
-
-
-def _claimed(claim: AnyClaim) -> str:
-    if isinstance(claim, ImprovementClaim) and claim.percent is not None:
-        return "the reduction"
-    return "the saving"
-
-
-def _other(case: Case, head: Finding) -> str:
-    """The other place of a contradiction."""
-    places = [place(case.claim(one)) for one in head.between if one != head.claim]
-    return places[0] if places else "another place"

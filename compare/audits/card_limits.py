@@ -34,11 +34,6 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     """Whether the durations that a paper calls its result keep the limits.
 
     The claims that the sentence speaks of come with it: other rows have sentences of their own.
-
-    Parameters
-    ----------
-    words : mapping of str to Judgement
-        Of each claim, by its id.
     """
     case = study.case
     unknown = "Whether the limits are kept cannot be checked"
@@ -129,8 +124,7 @@ def _within(study: Study, own: Sequence[RowClaim]) -> str:
     cut, ratio, row, worst = max(found, key=lambda one: one[:2])
     how = "if digits were cut off" if cut else "within rounding"
     where = "" if len(own) == 1 or not cut else f", those in {place(row)}"
-    # 1.01: ratio to a limit at the printed digits from which on a card gives it: below, digits end
-    # there.
+    # Below one per cent the printed digits themselves end.
     if worst is None or ratio < 1.01 or worst.joint is None:
         return f"{where} {how}"
     share = 100 * (ratio - 1)

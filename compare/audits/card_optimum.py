@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ...nlp import Evidence, Solution, Status
 from ...problem import Coupling, shown_bound
 from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, TimeClaim
@@ -20,6 +18,7 @@ from ..documents import (
     count_words,
     ranged,
 )
+from .amounts import percent, seconds
 from .card_limits import FEW
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
@@ -31,7 +30,7 @@ from .profile_motions import above_shortest
 from .rounding import meet
 from .stated import RowClaim, other_objective, printed_total
 from .stated_totals import contradicts_its_parts, other_totals
-from .study import Pair, Study
+from .study import Pair, Study, Total
 from .waterfall import stands_in
 
 _MANY_TIMES = 10.0
@@ -53,8 +52,6 @@ def optimum_line(
 
     Parameters
     ----------
-    words : mapping of str to Judgement
-        Of each claim, by its id.
     before : bool
         Whether the line before has said that way-points are in doubt.
     """
@@ -133,9 +130,8 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     main = [pair for pair in study.pairs if pair.reading == study.main_reading]
     rows = [PrintedRow(study, c, p) for c in claims for p in main if c.problem in (None, p.problem)]
     above = {row.problem: above_shortest(row) for row in rows}
-    # 1e-4: share above the shortest total from which it is said: a hundredth of a percent, as the
-    # claims.
-    longer = [f"{100 * more:.2g} %" for more in above.values() if more > 1e-4]
+    # From a hundredth of a percent on, as the claims do.
+    longer = [percent(more, ".2g") for more in above.values() if more > 1e-4]
     if len(longer) > 1:
         return f" The algorithm's totals are {' and '.join(longer)} above the shortest totals."
     return f" One total of the algorithm is {longer[0]} above the shortest." if longer else ""
@@ -206,8 +202,6 @@ class _AtPrint:
         return f"{self.said} at the printed digits{explained}"
 
 
-_EMPTY = (np.inf, -np.inf)
-"""Stands for the times of a total that is not printed."""
 _Part = str | _Above | _AtPrint | _Agrees | _Unknown
 """What is said of one problem; plain words where a total differs otherwise."""
 
@@ -220,23 +214,10 @@ def _remarked(shown: str, remark: str) -> str:
 def _together(parts: Sequence[_Above]) -> str:
     """Several printed totals beside their optima in one phrase."""
     alike = len({p.least for p in parts}) == 1
+    shown = " and ".join(f"{p.shown} ({p.remark})" if p.remark else p.shown for p in parts)
     # Distances that print alike are said once.
-    shown, shares, bests = (
-        " and ".join(dict.fromkeys(one) if k == 1 else one)
-        for k, one in enumerate(
-            zip(
-                *(
-                    (
-                        f"{p.shown} ({p.remark})" if p.remark else p.shown,
-                        p.far if alike else f"{p.least}{p.far}",
-                        p.best,
-                    )
-                    for p in parts
-                ),
-                strict=True,
-            )
-        )
-    )
+    shares = " and ".join(dict.fromkeys(p.far if alike else f"{p.least}{p.far}" for p in parts))
+    bests = " and ".join(p.best for p in parts)
     least, name = parts[0].least if alike else "", _PLURALS[parts[0].name]
     return f"{shown} are {least}{shares} above the {name} of {bests}"
 
@@ -245,12 +226,12 @@ def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     """A printed total beside its optimum, and others that are printed of it; none where none is."""
     pair = Pair(waterfall.problem, waterfall.reading)
     solution = study.optimum(pair)
-    why = _unknown(solution)
-    if why and not study.limited(pair):
-        why = "no limits are stated, so there is no shortest motion"
-    if why:
-        return [_Unknown(why)]
-    claim = _totalled(study, waterfall)
+    if why := _unknown(solution):
+        free = "no limits are stated, so there is no shortest motion"
+        return [_Unknown(why if study.limited(pair) else free)]
+    claim: AnyClaim | None = own_result(study.case, bare_totals(study.case, waterfall.problem))
+    if waterfall.claim is not None:
+        claim = study.case.claim(waterfall.claim)
     if not isinstance(claim, TimeClaim):
         return []
     others = other_totals(PrintedRow(study, claim, pair))
@@ -259,26 +240,28 @@ def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
 
 
 def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
-    study = row.study
+    study, best = row.study, solution.best
     certified = solution.evidence is Evidence.CERTIFIED
     name = "proven optimum" if certified else "best known total"
     span = _span(solution)
-    shown_best = f"{span}{_together_where_apart(study, row.pair)}"
-    shown_best += at_ratios(solution.problem)
-    best = f"{name} of {shown_best}"
-    total = row.total
+    # Where the paper plans each joint separately, that has another optimum.
+    together = " of all joints together" if planned_apart(study.problem(row.pair)) else ""
+    shown_best = f"{span}{together}{at_ratios(solution.problem)}"
+    optimum = f"{name} of {shown_best}"
+    total, printed = row.total, printed_total(row.claim)
     if total is None:
         return None
     shown, (low, high) = study.total_digits(row.claim), total.interval
     if off_ratios(row) is not None:
         return f"{shown} belongs to durations in ratios other than those that the reading fixes"
-    seconds = _seconds(row)
-    share = seconds / solution.best - 1
+    own = None if printed is None else row.time(printed)
+    seconds = float(row.durations.value.sum()) if own is None else own.value
+    share = seconds / best - 1
     minimised = other_objective(study.case, row.claim)
     if minimised is not None and share > 0:
         motion = f"shortest {'' if certified else 'known '}motion on the same curve"
         motion += at_ratios(solution.problem)
-        # 8: words of an objective that the card repeats; a longer one is left to the claims.
+        # A longer objective is left to the claims.
         called = f" ({minimised})" if count_words(minimised) <= 8 else ""
         return (
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
@@ -286,42 +269,41 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
         )
     remark = _kept_there(row)
     said = _remarked(shown, remark)
-    joints = _joint_by_joint(row, seconds)
+    joints = _joint_by_joint(row, total, seconds)
     if joints is not None:
         return f"{said} {joints}"
     floor = solution.lower_bound
-    if floor is not None and " to " in span and low <= solution.best and floor <= high:
+    if floor is not None and " to " in span and low <= best and floor <= high:
         return f"{said} lies in the proven interval of the optimum, {shown_best}"
-    own, cut = _printed_range(row)
-    if low <= solution.best <= high or own[0] <= solution.best <= own[1]:
-        return _Agrees(said, name, best)
-    if cut[0] <= solution.best <= cut[1]:
-        return f"{said} agrees with the {best} if digits were cut off"
+    if low <= best <= high or (own is not None and own.lower <= best <= own.upper):
+        return _Agrees(said, name, optimum)
+    if own is not None and own.cut_off().lower <= best <= own.cut_off().upper:
+        return f"{said} agrees with the {optimum} if digits were cut off"
     if loose := row.statement.declaration.loose:
         return f"{said} is not compared: {loose[0].lower()}{loose[1:]} are rounded numbers"
     ends = optimum_range(row)
     if share > 0:
         if ends.upper is None or not low > ends.upper:
-            far = f"{said} is {_far(share, 'above')} the {best}"
+            far = f"{said} is {_far(share, 'above')} the {optimum}"
             return _AtPrint(far, ends.upper is not None)
         most = None if ends.lower is None else high / ends.lower - 1
         bound, far = _bounded(low / ends.upper - 1, share, most)
         if share >= _MANY_TIMES:
-            return f"{said} is {bound}{far} the {best}"
+            return f"{said} is {bound}{far} the {optimum}"
         return _Above(shown, remark, bound, far, name, shown_best)
     if ends.lower is not None and high < ends.lower:
         least = None if ends.upper is None else 1 - low / ends.upper
         bound, far = _bounded(1 - high / ends.lower, -share, least)
-        return f"{said} is {bound}{far} below the {best}"
+        return f"{said} is {bound}{far} below the {optimum}"
     # To first order the digits shorten the optimum by no more than they are proved to lengthen it.
-    reach = 0.0 if ends.upper is None else ends.upper / solution.best - 1
-    may = high >= solution.best * (1 - reach) and reach > 0
-    return _AtPrint(f"{said} is {_far(-share, 'below')} the {best}", may)
+    reach = 0.0 if ends.upper is None else ends.upper / best - 1
+    may = high >= best * (1 - reach) and reach > 0
+    return _AtPrint(f"{said} is {_far(-share, 'below')} the {optimum}", may)
 
 
 def _size(share: float) -> str:
     """How far a time is from another: as a percentage, or how many times it is."""
-    return f"{1 + share:.1f} times" if share >= _MANY_TIMES else _percent(share)
+    return f"{1 + share:.1f} times" if share >= _MANY_TIMES else f"{_percent(share)} %"
 
 
 def _far(share: float, side: str) -> str:
@@ -341,21 +323,11 @@ def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
     return "at least ", at_least_percent(least)
 
 
-def _printed_range(row: PrintedRow[TimeClaim]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Times that are rounded to the digits of a printed total, and those cut off to them, s."""
-    printed = printed_total(row.claim)
-    if printed is None:
-        return _EMPTY, _EMPTY
-    own = row.time(printed)
-    cut = own.cut_off()
-    return (own.lower, own.upper), (cut.lower, cut.upper)
-
-
 def _span(solution: Solution) -> str:
     """An optimum, or the interval that is proved to hold it where its ends print differently."""
     low = solution.best if solution.lower_bound is None else solution.lower_bound
     if f"{low:.4f}" == f"{solution.best:.4f}":
-        return f"{low:.4f} s"
+        return seconds(low, ".4f")
     ends = shown_bound(low, "lower", places=4), shown_bound(solution.best, "upper", places=4)
     return f"{' to '.join(ends)} s"
 
@@ -367,17 +339,11 @@ def _kept_there(row: PrintedRow[TimeClaim]) -> str:
     """
     if not isinstance(row.claim, RowClaim) or row.unmoved is not None:
         return ""
-    if contradicts_its_parts(row):
-        return ""  # the total is of other durations than those beside it
-    return _REMARKS.get(row.keeping, "")
+    # A total that is not the sum of the durations beside it is of others.
+    return "" if contradicts_its_parts(row) else _REMARKS.get(row.keeping, "")
 
 
-def _together_where_apart(study: Study, pair: Pair) -> str:
-    """What the optimum is of, where the paper plans each joint separately: that has another one."""
-    return " of all joints together" if planned_apart(study.problem(pair)) else ""
-
-
-def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
+def _joint_by_joint(row: PrintedRow[TimeClaim], total: Total, seconds: float) -> str | None:
     """A total beside what the joints' own optima give, where each is planned by itself."""
     claim = row.claim
     if not planned_apart(row.study.problem(row.pair)) or claim.joint is not None:
@@ -385,8 +351,7 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     if claim.coupling is Coupling.SHARED and not isinstance(claim, MaximumClaim):
         return None  # the longest durations of joints that are each planned alone are shared too
     answer = row.study.per_joint(row.pair)
-    total = row.total
-    if not answer.ranges or answer.check is None or total is None:
+    if not answer.ranges or answer.check is None:
         return None
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
@@ -400,23 +365,11 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
         return f"agrees with {span} {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
-    shown = " to ".join(dict.fromkeys(map(_percent_digits, shares)))
+    shown = " to ".join(dict.fromkeys(map(_percent, shares)))
     return f"is {shown} % {'above' if longer else 'below'} {span} {own}"
 
 
-def _seconds(row: PrintedRow[TimeClaim]) -> float:
-    """A printed total; the sum of the printed durations where none is printed."""
-    number = printed_total(row.claim)
-    if number is None:
-        return float(row.durations.value.sum())
-    return row.time(number).value
-
-
 def _percent(share: float) -> str:
-    return f"{_percent_digits(share)} %"
-
-
-def _percent_digits(share: float) -> str:
     percent = 100 * share
     return f"{percent:.1f}" if percent >= 1 else f"{percent:.2g}"
 
@@ -435,10 +388,3 @@ def _unknown(solution: Solution) -> str:
     if solution.evidence not in (Evidence.CERTIFIED, Evidence.BEST_KNOWN):
         return "the optimum cannot be computed: the solver did not converge"
     return ""
-
-
-def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
-    """The printed total beside an optimum: that of the waterfall, else a bare one."""
-    if waterfall.claim is not None:
-        return study.case.claim(waterfall.claim)
-    return own_result(study.case, bare_totals(study.case, waterfall.problem))

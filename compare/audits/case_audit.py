@@ -41,13 +41,12 @@ from ..documents import (
     known,
 )
 from .card import verdict_card
-from .causes import find_causes, with_caveats
+from .causes import find_causes, judge, rested, weigh, with_caveats
 from .digit_ranges import implausible
 from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
-from .judging import judge, rested, weigh
-from .options import SEEDS, AuditOptions
+from .intervals import SEEDS, AuditOptions
 from .paper_runs import reached
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
@@ -83,9 +82,6 @@ class CaseAudit(InNotebooks):
     day: date | None = None
     """Date of the audit; by default the day on which its document is made."""
 
-    made_waterfalls: tuple[Waterfall, ...] | None = None
-    """Waterfalls made by hand; otherwise `waterfalls` computes them."""
-
     @property
     def draft(self) -> bool:
         """Whether the case is an author's draft, for which the audit lists what to change."""
@@ -94,8 +90,6 @@ class CaseAudit(InNotebooks):
     @cached_property
     def waterfalls(self) -> tuple[Waterfall, ...]:
         """Where the time goes, for each problem and reading."""
-        if self.made_waterfalls is not None:
-            return self.made_waterfalls
         return waterfalls(self.study) if self.study.has_problems else ()
 
     @cached_property
@@ -286,15 +280,9 @@ def audit_case(study: Study) -> CaseAudit:
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
+    named = Named(study.case.labels, implausible(study), study.main_reading)
     judgements = tuple(
-        judge(
-            claim.id,
-            by_rule,
-            admissible,
-            study.readings,
-            Named(study.case.labels, implausible(study), study.main_reading),
-        )
-        for claim in study.case.claims
+        judge(claim.id, by_rule, admissible, study.readings, named) for claim in study.case.claims
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = rested(study.case, judgements)
@@ -303,18 +291,16 @@ def audit_case(study: Study) -> CaseAudit:
     return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
 
 
-def _judged(group: _Group, study: Study) -> Iterator[Finding]:
+def _judged(group: _Group, study: Study) -> list[Finding]:
     """What rules say; where they fail, what they say of each claim, problem and reading alone."""
     try:
-        yield from list(group(study))
+        return list(group(study))
     except _ENDING:
         raise
     except TrajgapError as error:
-        claims = [(one, _alone(group, study, one)) for one in study.claims]
-        for _, found in claims:
-            yield from found
-        if not any(f.rule == NOT_COMPUTED for _, found in claims for f in found):
-            yield _not_computed(error)
+        found = [f for one in study.claims for f in _alone(group, study, one)]
+        said = any(f.rule == NOT_COMPUTED for f in found)
+        return found if said else [*found, _not_computed(error)]
 
 
 def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:

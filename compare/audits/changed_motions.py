@@ -3,48 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Limits, Printed, Problem, Quantity, evaluate
-from ...problem.cases import AnyClaim, Claim, PeakClaim, Statement, motions_of
+from ...problem.cases import AnyClaim, Claim, PeakClaim, motions_of
 from ..documents import Explanation, Finding
 from .printed_row import PrintedRow
 from .rules import box_reach, largest
-from .slips import (
-    Slip,
-    Spot,
-    durations,
-    exchanges,
-    limits,
-    misprints,
-    of_rows,
-    turns,
-    values,
-    waypoints,
-)
+from .slips import Slip, durations, exchanges, limits, misprints, of_rows, turns, values, waypoints
 from .stated import RowClaim
 
-
-@dataclass(frozen=True, eq=False)
-class _Tried:
-    """Changes of one kind, with the peaks of the motions that they lead to.
-
-    ``peaks`` and ``limits`` have the shape (changes, joints, 3).
-    """
-
-    slips: Sequence[Slip]
-    peaks: Array
-    limits: Array
-
-    def ratios(self) -> Array:
-        """Largest ratio to a limit of each motion."""
-        with np.errstate(invalid="ignore", divide="ignore"):
-            found = np.nan_to_num(self.peaks / self.limits, nan=0.0)
-        most: Array = found.max(axis=(1, 2), initial=0.0)
-        return most
+_Tried = tuple[Sequence[Slip], Array, Array]
+"""Changes of one kind; the peaks of the motions that they lead to, and the limits, both of the
+shape (changes, joints, 3)."""
 
 
 def changes_of_motion(
@@ -54,18 +28,13 @@ def changes_of_motion(
 
     The likeliest first; and what only brings the motion nearer to its limits.
     """
-    problem = row.posed()
-    found = row.check
-    if found.worst is None or found.worst.quantity in ("curve", "duration"):
+    problem, worst = row.posed(), row.check.worst
+    if worst is None or worst.quantity in ("curve", "duration"):
         return [], None
     if problem.limits.uneven or problem.curve.free:
         return [], None
-    h = row.durations.value
-    printed = _peaks(problem, h[None])
-    sizes = problem.limits.derivatives
-    own = _Tried((), printed, sizes[None])
-    every = list(_changes(row, finding, printed[0]))
-    before = float(own.ratios()[0])
+    printed = _peaks(problem, row.durations.value[None])
+    before = float(_ratios(printed, problem.limits.derivatives).max())
     ranked: list[tuple[tuple[int, bool, int, float], Slip]] = []
     best: tuple[float, Slip] | None = None
     room = _room(row)
@@ -73,21 +42,37 @@ def changes_of_motion(
     off = int(_offs(row, problem, printed, room)[0])
     # Of a peak that does not fit, only what makes it fit is an explanation.
     most = off - 1 if isinstance(claim, PeakClaim) else off
-    for tried in every:
-        offs = _offs(row, problem, tried.peaks, room)
-        for slip, ratio, far in zip(tried.slips, tried.ratios(), offs, strict=True):
+    for slips, peaks, sizes in _changes(row, finding, printed[0]):
+        offs = _offs(row, problem, peaks, room)
+        ratios = _ratios(peaks, sizes).max(axis=(1, 2))
+        for slip, ratio, far in zip(slips, ratios, offs, strict=True):
             away = bool(ratio < 1 - room)
-            # 1.5: factor by which a number may change where no other printed number speaks for the
-            # change: a leading digit could always make a duration long enough, and such a change
-            # explains nothing.
+            # A leading digit could always make a duration long enough, so a change by more than
+            # half that no other printed number speaks for explains nothing.
             telling = far < off or not away or slip.share <= 1.5
             if ratio <= least and far <= most and telling and not _breaks_sum(row.claim, slip):
                 ranked.append(((int(far), away, slip.slips, slip.share), slip))
             elif slip.share == 1.0 and (best is None or ratio < best[0]):
-                best = float(ratio), slip
+                best = float(ratio), slip  # an exchange or a turn
     ranked += _other_values(row, claim, problem, printed[0], room)
     ranked.sort(key=lambda one: one[0])
-    return [(slip, not key[1]) for key, slip in ranked], _nearer(finding, before, best)
+    nearer = None
+    # Where less than a tenth of the excess goes, nothing is explained.
+    if finding.rule == "TG201" and best is not None and best[0] - 1 <= 0.9 * (before - 1):
+        nearer = Explanation(
+            change=best[1].change,
+            effect=f"Then the largest ratio to a limit falls from {before:.4g} to {best[0]:.4g}, "
+            "and a limit is still broken.",
+            settles=False,
+        )
+    return [(slip, not key[1]) for key, slip in ranked], nearer
+
+
+def _ratios(peaks: Array, limits: Array) -> Array:
+    """Ratios of peaks to limits; 0 where both are 0."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found: Array = np.nan_to_num(peaks / limits, nan=0.0)
+    return found
 
 
 def _room(row: PrintedRow[Claim]) -> float:
@@ -104,9 +89,8 @@ def _other_values(
     if not isinstance(claim, PeakClaim):
         return
     order = QUANTITIES.index(claim.derivative)
-    case = row.study.case
-    labels = case.robot.joints if claim.values else (claim.joint,)
-    for label, spot in zip(labels, values(case, claim), strict=True):
+    spots = values(row.study.case, claim)
+    for (label, _), spot in zip(row.study.printed_numbers(claim), spots, strict=True):
         if label is not None and label not in problem.joints:
             continue
         joints = slice(None) if label is None else problem.joints.index(label)
@@ -151,25 +135,11 @@ def _edited(row: RowClaim, slip: Slip) -> list[Printed]:
     return found
 
 
-def _nearer(finding: Finding, before: float, best: tuple[float, Slip] | None) -> Explanation | None:
-    """An exchange or a turn that brings a motion nearer to its limits, and not within them."""
-    # 0.9: share of the excess that a change must leave at most to be called an improvement.
-    if finding.rule != "TG201" or best is None or best[0] - 1 > 0.9 * (before - 1):
-        return None
-    return Explanation(
-        change=best[1].change,
-        effect=f"Then the largest ratio to a limit falls from {before:.4g} to {best[0]:.4g}, and a "
-        "limit is still broken.",
-        settles=False,
-    )
-
-
 def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Iterator[_Tried]:
     """Other durations, way-points and limits, with the peaks that follow."""
     case, problem = row.study.case, row.posed()
-    statement = row.statement
+    statement, sizes = row.statement, problem.limits.derivatives
     h = row.durations.value
-    sizes = problem.limits.derivatives
     spots = durations(case, row.claim)
     slips = [*exchanges(spots), *of_rows(case, row.claim)]
     slips += [s for spot in spots for s in misprints(spot)]
@@ -177,9 +147,8 @@ def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Ite
         [[statement.si(n, "time").value for n in _edited(row.claim, slip)] for slip in slips]
     )
     if slips:
-        yield _Tried(slips, _peaks(problem, times.reshape(-1, h.size)), sizes[None])
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = np.nan_to_num(printed / sizes, nan=0.0)
+        yield slips, _peaks(problem, times.reshape(-1, h.size)), sizes[None]
+    ratios = _ratios(printed, sizes)
     # A way-point moves its joint alone, so no other joint may be beyond a limit already.
     beyond = ratios.max(axis=1) > 1.0
     for j in np.flatnonzero(beyond if finding.rule == "TG201" else np.ones_like(beyond)):
@@ -195,21 +164,17 @@ def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Ite
         columns = np.tile(problem.waypoints[:, j], (len(slips), 1))
         for k, slip in enumerate(slips):
             path, number = slip.edits[0]
-            columns[k, paths.index(path)] += _step(statement, spots, path, number, at)
+            # Whole turns between a printed angle and the one that is meant stay.
+            printed_one = spots[paths.index(path)].number
+            was, now = (statement.si(n, "position", joint=at).value for n in (printed_one, number))
+            columns[k, paths.index(path)] += now - was
         if slips:
-            peaks[:, j] = _peaks_through(problem.joint(int(j)), columns, h)
-            yield _Tried(slips, peaks, sizes[None])
+            alone = problem.joint(int(j))
+            each = (replace(alone, waypoints=column[:, None]) for column in columns)
+            peaks[:, j] = [_peaks(one, h[None])[0, 0] for one in each]
+            yield slips, peaks, sizes[None]
         for r in np.flatnonzero(ratios[j] > 1.0):
             yield from _other_limits(row, problem, printed, int(j), int(r))
-
-
-def _step(
-    statement: Statement, spots: Sequence[Spot], path: object, number: Printed, joint: int
-) -> float:
-    """How far a changed way-point lies from the printed one, rad or m; whole turns stay."""
-    was = next(spot.number for spot in spots if spot.path == path)
-    one, other = (statement.si(n, "position", joint=joint).value for n in (was, number))
-    return other - one
 
 
 def _other_limits(
@@ -229,19 +194,13 @@ def _other_limits(
             slips.append(slip)
             sizes.append(size)
     if slips:
-        yield _Tried(slips, np.tile(printed, (len(slips), 1, 1)), np.array(sizes))
+        yield slips, np.tile(printed, (len(slips), 1, 1)), np.array(sizes)
 
 
 def _peaks(problem: Problem, times: Array) -> Array:
     """Largest absolute derivatives, shape (batch, joints, 3), rad and s."""
     plain = Limits(velocity=1.0, acceleration=1.0, jerk=1.0, joints=len(problem.joints))
     return evaluate(replace(problem, limits=plain), times).ratios
-
-
-def _peaks_through(problem: Problem, columns: Array, h: Array) -> Array:
-    """The same of one joint through several columns of way-points, shape (columns, 3)."""
-    each = (replace(problem, waypoints=column[:, None]) for column in columns)
-    return np.array([_peaks(one, h[None])[0, 0] for one in each])
 
 
 def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -> Array:
@@ -251,8 +210,7 @@ def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -
         if not isinstance(claim, PeakClaim) or row.claim not in motions_of(case.claims, claim):
             continue
         order = QUANTITIES.index(claim.derivative)
-        labels = case.robot.joints if claim.values else (claim.joint,) * len(claim.printed)
-        for label, number in zip(labels, claim.printed, strict=True):
+        for label, number in row.study.printed_numbers(claim):
             if label is not None and label not in problem.joints:
                 continue
             own = peaks[:, :, order]

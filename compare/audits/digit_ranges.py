@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import exp, isfinite, log
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,14 +17,10 @@ from .stated import RowClaim, other_objective
 from .study import Study
 
 
-@dataclass(frozen=True)
-class OptimumRange:
-    """Bounds on the optimum of every problem whose way-points and limits round to the digits.
+class OptimumRange(NamedTuple):
+    """Bounds on the optimum of every problem whose way-points and limits round to the digits, s.
 
-    Attributes
-    ----------
-    lower, upper : float or None
-        s; None if no bound is proved. A best known total of numbers that are exact is both.
+    None if no bound is proved. A best known total of numbers that are exact is both.
     """
 
     lower: float | None
@@ -58,8 +54,7 @@ def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
 
 def all_exact(row: PrintedRow[Claim]) -> bool:
     """Whether nothing that defines the problem is a rounded number."""
-    statement = row.statement
-    if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
+    if _loose(row):
         return False
     problem = row.posed()
     box = row.waypoint_box(problem)
@@ -67,12 +62,16 @@ def all_exact(row: PrintedRow[Claim]) -> bool:
     return same_limits(problem, loosest) and np.array_equal(box.lower, box.upper)
 
 
+def _loose(row: PrintedRow[Claim]) -> bool:
+    """Whether ends, ratios or the curve itself are rounded numbers, which no box holds."""
+    statement = row.statement
+    return bool(statement.loose_ends or statement.loose_ratios or statement.declaration.loose)
+
+
 def below_certified(row: PrintedRow[Claim]) -> tuple[str, ...] | None:
     """That a total lies below a certified bound, which speaks only where the problem is exact."""
     bound = row.optimum.lower_bound
-    if bound is None or row.longest_total >= bound:
-        return None
-    if not all_exact(row):
+    if bound is None or row.longest_total >= bound or not all_exact(row):
         return None
     shown = shown_bound(bound, "lower", places=6)
     return (f"The printed total lies below the certified lower bound {shown} s.",)
@@ -80,11 +79,9 @@ def below_certified(row: PrintedRow[Claim]) -> tuple[str, ...] | None:
 
 def _slow_down(row: PrintedRow[Claim]) -> float | None:
     """By what motions of every problem in the box are slowed down to keep the printed limits."""
-    statement = row.statement
-    if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
+    if _loose(row):
         return None
-    problem = row.posed()
-    loosest = row.posed(Digits.LOOSEST_CUT)
+    problem, loosest = row.posed(), row.posed(Digits.LOOSEST_CUT)
     # Slowing down leaves the path, and may take a duration beyond its upper bound.
     if not problem.curve.homogeneous or np.isfinite(problem.duration_upper).any():
         return None
@@ -103,10 +100,8 @@ def _slow_down(row: PrintedRow[Claim]) -> float | None:
     with np.errstate(divide="ignore", invalid="ignore"):
         larger = np.where(np.isfinite(own) & (loose > 0), loose / own, 1.0)
     most = (larger.max(axis=0) * wider[:, None]).max(axis=0)
-    factors = [
-        most[r] ** (1.0 / (r + 1)) for r in range(3) if bool(np.isfinite(own[:, :, r]).any())
-    ]
-    slower = max(1.0, *factors) if factors else 1.0
+    limited = np.flatnonzero(np.isfinite(own).any(axis=(0, 1)))
+    slower = max([1.0, *(most[r] ** (1.0 / (r + 1)) for r in limited)])
     return float(slower) if np.isfinite(slower) else None
 
 
@@ -148,26 +143,19 @@ def implausible(study: Study) -> dict[str, str]:
     known = {rid: stretch for rid, stretch in found.items() if stretch is not None}
     factors = {rid: exp(abs(log(stretch))) for rid, stretch in known.items()}
     least = min(factors.values(), default=_FAR)
+    far = {rid: factor for rid, factor in factors.items() if factor >= _FAR > least}
     return {
-        rid: _why(known[rid], factor) for rid, factor in factors.items() if factor >= _FAR > least
+        rid: f"printed durations divided by {factor:.3g} would still keep every limit"
+        if known[rid] < 1
+        else f"printed durations keep the limits only if multiplied by {factor:.3g}"
+        for rid, factor in far.items()
     }
 
 
 def _stretch(study: Study, reading: str) -> float | None:
     """By what all printed durations times this keep the limits, and those of one claim just so."""
-    timed = [
-        claim
-        for claim in study.case.claims
-        if isinstance(claim, RowClaim)
-        if claim.state != "before" and other_objective(study.case, claim) is None
-    ]
+    rows = [c for c in study.case.claims if isinstance(c, RowClaim) and c.state != "before"]
+    timed = [c for c in rows if other_objective(study.case, c) is None]
     checked = [row.check_or_none for row in rows_under(study, timed, reading)]
     stretches = [found.stretch for found in checked if found is not None]
-    real = [one for one in stretches if isfinite(one) and one > 0]
-    return max(real, default=None)
-
-
-def _why(stretch: float, factor: float) -> str:
-    if stretch < 1:
-        return f"printed durations divided by {factor:.3g} would still keep every limit"
-    return f"printed durations keep the limits only if multiplied by {factor:.3g}"
+    return max((one for one in stretches if isfinite(one) and one > 0), default=None)

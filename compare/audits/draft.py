@@ -8,7 +8,7 @@ from decimal import Decimal
 from ...problem.cases import AnyClaim, MaximumClaim, StatementClaim
 from ..documents import Advice, Cause, ClaimVerdict, Edit, Judgement, Severity, Urgency
 from .card_errors import plainly
-from .reworded import CLAIM
+from .roots import CLAIM
 from .stated import claim_text
 from .study import Study
 
@@ -21,10 +21,6 @@ _FIXES = {
     "TG601": "Compare joint angles and positions with your model of the robot.",
 }
 """How to fix what a rule finds, where no number mends it."""
-_UNKNOWN = "Compare the numbers with those of your program, and correct the text."
-"""How to fix what no rule and no number mends."""
-_FOLLOWS = "Rests on numbers that change above."
-"""What is found of a number that is wrong only once others are corrected."""
 
 
 def advise(
@@ -35,13 +31,6 @@ def advise(
     There is one for each cause, for each claim whose answer depends on the reading, for each claim
     that changes because others do, for each that cannot be checked, and for what is left open.
     Every edit belongs to one of them at least.
-
-    Parameters
-    ----------
-    judgements : sequence of Judgement
-        Of the same audit.
-    edits : sequence of Edit
-        What to change in the draft, of all causes together.
     """
     left = list(edits)
 
@@ -64,52 +53,48 @@ def advise(
         if judgement.verdict is ClaimVerdict.DEPENDS:
             found.append(_of_readings(study, claim, judgement, taken(claim.id)))
         elif judgement.verdict is ClaimVerdict.NOT_CHECKABLE:
-            found.append(
-                Advice(
-                    urgency=Urgency.OPEN,
-                    where=claim.where,
-                    claim=claim.id,
-                    says=f"Readers cannot check this: {judgement.why}",
-                    change="Print what is missing, or drop the claim.",
-                    edits=(),
-                )
-            )
-    found += _following(study, left)
+            says = f"Readers cannot check this: {judgement.why}"
+            change = "Print what is missing, or drop the claim."
+            found.append(_advice(Urgency.OPEN, claim, says, change))
+    # Claims that change because others do, each with all its edits.
+    for claim in study.case.claims:
+        own = tuple(one for one in left if one.claim == claim.id)
+        if own:
+            says = "Rests on numbers that change above."
+            found.append(_advice(Urgency.FOLLOWS, claim, says, _told(study, claim, own), own))
     found += _left_open(study)
     return tuple(sorted(found, key=lambda one: list(Urgency).index(one.urgency)))
 
 
-def _of_cause(study: Study, cause: Cause, edits: tuple[Edit, ...]) -> Advice:
-    claim = study.case.claim(cause.claim) if cause.claim else None
-    where = claim.where if claim is not None else "the whole draft"
-    rule = "" if cause.head is None else cause.head.rule
-    mended = any(one.key != CLAIM for one in edits)
-    fix = "" if mended else _FIXES.get(rule, "")
-    change = " ".join(one for one in (fix, _told(study, claim, edits)) if one)
-    against = cause.severity is Severity.ERROR
+def _advice(
+    urgency: Urgency,
+    about: AnyClaim | None,
+    says: str,
+    change: str,
+    edits: tuple[Edit, ...] = (),
+    where: str = "the whole draft",
+) -> Advice:
+    """Advice on a claim, or on what stands somewhere else."""
     return Advice(
-        urgency=Urgency.CONTRADICTED if against else Urgency.DOUBTFUL,
-        where=where,
-        claim=cause.claim,
-        says=" ".join(plainly(study.case, cause)),
-        change=change or _UNKNOWN,
+        urgency=urgency,
+        where=where if about is None else about.where,
+        claim=None if about is None else about.id,
+        says=says,
+        change=change,
         edits=edits,
     )
 
 
-def _following(study: Study, edits: Sequence[Edit]) -> Iterator[Advice]:
-    """Claims that change because others do, each with all its edits."""
-    for claim in study.case.claims:
-        own = tuple(one for one in edits if one.claim == claim.id)
-        if own:
-            yield Advice(
-                urgency=Urgency.FOLLOWS,
-                where=claim.where,
-                claim=claim.id,
-                says=_FOLLOWS,
-                change=_told(study, claim, own),
-                edits=own,
-            )
+def _of_cause(study: Study, cause: Cause, edits: tuple[Edit, ...]) -> Advice:
+    claim = study.case.claim(cause.claim) if cause.claim else None
+    rule = "" if cause.head is None else cause.head.rule
+    mended = any(one.key != CLAIM for one in edits)
+    fix = "" if mended else _FIXES.get(rule, "")
+    change = " ".join(one for one in (fix, _told(study, claim, edits)) if one)
+    unknown = "Compare the numbers with those of your program, and correct the text."
+    against = cause.severity is Severity.ERROR
+    urgency = Urgency.CONTRADICTED if against else Urgency.DOUBTFUL
+    return _advice(urgency, claim, " ".join(plainly(study.case, cause)), change or unknown, edits)
 
 
 # --- sentences ------------------------------------------------------------------------------------
@@ -124,7 +109,8 @@ def _told(study: Study, about: AnyClaim | None, edits: Sequence[Edit]) -> str:
     for claim_id, keys in groups.items():
         if claim_id is None:
             (meant,) = next(iter(keys.values())).becomes
-            said.append(f"The numbers given here assume {_why(study, meant)}.")
+            why = next(one.why for one in study.case.readings if one.id == meant)
+            said.append(f"The numbers given here assume “{why.removesuffix('.')}”.")
             continue
         claim = study.case.claim(claim_id)
         sentence = _sentence(study, claim, keys)
@@ -132,11 +118,6 @@ def _told(study: Study, about: AnyClaim | None, edits: Sequence[Edit]) -> str:
         where = f"{claim.where[:1].upper()}{claim.where[1:]}"
         said.append(f"{where}: {sentence}" if elsewhere else sentence)
     return " ".join(said)
-
-
-def _why(study: Study, reading: str) -> str:
-    why = next(one.why for one in study.case.readings if one.id == reading)
-    return f"“{why.removesuffix('.')}”"
 
 
 def _sentence(study: Study, claim: AnyClaim, keys: dict[str, Edit]) -> str:
@@ -179,43 +160,29 @@ def _of_readings(
     groups: dict[ClaimVerdict, list[str]] = {}
     for rid, word in judgement.readings.items():
         groups.setdefault(word, []).append(whys.get(rid, rid))
-    parts = [f"{word} if {_some(names)}" for word, names in groups.items()]
-    return Advice(
-        urgency=Urgency.DOUBTFUL,
-        where=claim.where,
-        claim=claim.id,
-        says=f"Your text can be read in {len(judgement.readings)} ways, and this is "
-        f"{'; '.join(parts)}.",
-        change="State in the text which is meant: units, curve, knots and ends."
-        + (f" {_told(study, claim, edits)}" if edits else ""),
-        edits=edits,
+    parts = []
+    for word, names in groups.items():
+        more = f" (and {len(names) - 1} more)" if len(names) > 1 else ""
+        parts.append(f"{word} if “{names[0]}”{more}")
+    ways = f"{len(judgement.readings)} ways, and this is {'; '.join(parts)}"
+    told = f" {_told(study, claim, edits)}" if edits else ""
+    return _advice(
+        Urgency.DOUBTFUL,
+        claim,
+        f"Your text can be read in {ways}.",
+        f"State in the text which is meant: units, curve, knots and ends.{told}",
+        edits,
     )
-
-
-def _some(names: Sequence[str]) -> str:
-    """The first reason, and how many more there are."""
-    more = f" (and {len(names) - 1} more)" if len(names) > 1 else ""
-    return f"“{names[0]}”{more}"
 
 
 def _left_open(study: Study) -> Iterator[Advice]:
     """What the case file lists as open: assumptions, and settings of algorithms."""
     for assumption in study.case.assumptions:
-        yield Advice(
-            urgency=Urgency.OPEN,
-            where="the text",
-            claim=None,
-            says=f"Left open: {assumption.text}",
-            change=f"Say which holds. Assumed here: {assumption.choice}",
-            edits=(),
-        )
+        says = f"Left open: {assumption.text}"
+        change = f"Say which holds. Assumed here: {assumption.choice}"
+        yield _advice(Urgency.OPEN, None, says, change, where="the text")
     for block in study.case.algorithms:
         for line in block.open:
-            yield Advice(
-                urgency=Urgency.OPEN,
-                where=block.where or block.name,
-                claim=None,
-                says=f"Left open for {block.name}: {line}",
-                change="Print this choice, so others can rerun the algorithm.",
-                edits=(),
-            )
+            says = f"Left open for {block.name}: {line}"
+            change = "Print this choice, so others can rerun the algorithm."
+            yield _advice(Urgency.OPEN, None, says, change, where=block.where or block.name)

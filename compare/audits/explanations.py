@@ -13,27 +13,16 @@ from ...problem import Case, TrajgapError, counts_in_words
 from ...problem.cases import (
     AnyClaim,
     ConditionsClaim,
-    DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
-    MeasureClaim,
-    PeakClaim,
+    MotionValueClaim,
     TotalTimeClaim,
-    ValueClaim,
     motions_of,
 )
-from ..documents import (
-    ClaimVerdict,
-    Explanation,
-    Finding,
-    HeldOtherwise,
-    Rounding,
-    Severity,
-    quoted,
-)
+from ..documents import Explanation, Finding, HeldOtherwise, Rounding, Severity, quoted
 from .changed_motions import changes_of_motion
 from .printed_row import PrintedRow
-from .roots import LIMITS, TABLES
+from .roots import AGAINST, LIMITS, TABLES
 from .rules import RuleGroup, count_conditions, held_otherwise
 from .slips import Slip, durations, misprints, of_rows, totals, values
 from .stated import RowClaim, place
@@ -45,28 +34,10 @@ _OF_DIGITS = {"TG101", "TG102", "TG103", "TG105"}
 """Rules that set printed numbers beside each other."""
 _NAMED = 3
 """Changes that are named where they explain as much as each other; of more only the number is."""
-
-_ALL_KEPT = "every limit is kept"
-"""What holds where a change brings all durations within their limits."""
-_BY_DEFAULT = "the default reading keeps every limit"
-"""The same on a card, where the reading has been named."""
-
-_DECIDED_AT_ONCE: tuple[type[AnyClaim], ...] = (
-    DurationsClaim,
-    MaximumClaim,
-    ImprovementClaim,
-    PeakClaim,
-    MeasureClaim,
-    ValueClaim,
-)
+_AT_ONCE = RowClaim | ImprovementClaim | MotionValueClaim
 """Claims that the rules judge without a search for an optimum."""
-_VALUES = PeakClaim | MeasureClaim | ValueClaim
-"""Claims of a derivative of a motion."""
-
 _Against = frozenset[tuple[str, str | None]]
 """What speaks against a case: rules, each with the claim that it contradicts."""
-_CONTRADICTED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-"""Verdicts that speak against a claim."""
 _SETTLED = {
     "TG101": "the printed total is the sum of its parts",
     "TG102": "the longest durations follow from the rows",
@@ -181,7 +152,7 @@ class _Trial:
         slips.sort(key=lambda slip: (slip.slips, slip.share))
         group = next(g for g in self.groups if finding.rule in g.rules)
         found = []
-        # 400: changes of digits alone that are put to the rule which found the contradiction.
+        # Each change is put to the rule that found the contradiction, the smallest first.
         for slip in slips[:400]:
             try:
                 changed = self.changed(slip)
@@ -205,10 +176,6 @@ def explained(
     ----------
     groups : sequence of RuleGroup
         What judges a case with a change made.
-    root : str
-        Of the cause.
-    finding : Finding
-        The first finding of the cause.
     """
     kind = root.split(" ")[0]
     if kind == TABLES:
@@ -291,12 +258,12 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     before = trial.against()
     if (finding.rule, finding.claim) not in before:
         return []  # it warns, and contradicts nothing
+    tried: list[tuple[Slip, bool]] = []
+    nearer = None
     if row is not None and pair in study.pairs:
         tried, nearer = changes_of_motion(PrintedRow(study, row, pair), finding, claim)
     elif finding.rule in _OF_DIGITS:
-        tried, nearer = [(slip, False) for slip in trial.of_digits()], None
-    else:
-        return []
+        tried = [(slip, False) for slip in trial.of_digits()]
     judged = [
         one
         for slip, reached in _likeliest(tried)
@@ -309,11 +276,10 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     first = judged[0]
     alike = [one for one in judged if one.rank == first.rank]
     others = len(alike) - _NAMED
-    more = (
-        f" At least {others} other change{'s' * (others > 1)} would have the same effect."
-        if others > 0
-        else ""
-    )
+    more = ""
+    if others > 0:
+        plural = "s" if others > 1 else ""
+        more = f" At least {others} other change{plural} would have the same effect."
     named = [(one, more) for one in alike[:_NAMED]]
     kinds = {one.slip.kind for one, _ in named}
     # What explains as much at the cost of more slips, or without reaching a limit, comes after.
@@ -321,18 +287,23 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
         if len(one.left) == len(first.left) and one.slip.kind not in kinds:
             named.append((one, ""))
             kinds.add(one.slip.kind)
-    return [
-        Explanation(
-            change=one.slip.change,
-            effect=f"{effect}{under}.{note}",
-            in_any=f"{effect}.{note}",
-            brief=f"{on_card}." if default and on_card != effect else f"{effect}{under}.",
+    found = []
+    for one, note in named:
+        effect = _effect(study, one, row or claim, "every limit is kept")
+        # A card has named the reading.
+        brief = f"{effect}{under}."
+        if default:
+            brief = _effect(study, one, row or claim, "the default reading keeps every limit")
+            brief = f"{effect}{under}." if brief == effect else f"{brief}."
+        found.append(
+            Explanation(
+                change=one.slip.change,
+                effect=f"{effect}{under}.{note}",
+                in_any=f"{effect}.{note}",
+                brief=brief,
+            )
         )
-        for one, note in named
-        for effect, on_card in (
-            [_effect(study, one, row or claim, kept) for kept in (_ALL_KEPT, _BY_DEFAULT)],
-        )
-    ]
+    return found
 
 
 def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]]:
@@ -340,8 +311,7 @@ def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]
     seen: Counter[str] = Counter()
     for slip, reached in tried:
         seen[slip.kind] += 1
-        # 6: changes of each kind that the rules judge, the likeliest first: judging one takes as
-        # long as judging the paper's own row.
+        # Judging one change takes as long as judging the paper's own row.
         if seen[slip.kind] <= 6:
             yield slip, reached
 
@@ -350,12 +320,10 @@ def _row(study: Study, finding: Finding, claim: AnyClaim) -> RowClaim | None:
     """The durations whose motion a finding is about; None if it is about digits alone."""
     if finding.rule not in _OF_MOTIONS:
         return None
-    if isinstance(claim, RowClaim):
-        return claim
-    if not isinstance(claim, _VALUES):
-        return None
-    found = [c for c in motions_of(study.case.claims, claim) if c.id in finding.between]
-    return found[0] if found and isinstance(found[0], RowClaim) else None
+    about = [claim]
+    if isinstance(claim, MotionValueClaim):
+        about = [c for c in motions_of(study.case.claims, claim) if c.id in finding.between]
+    return next((c for c in about[:1] if isinstance(c, RowClaim)), None)
 
 
 # --- what the rules say ---------------------------------------------------------------------------
@@ -364,7 +332,7 @@ def _row(study: Study, finding: Finding, claim: AnyClaim) -> RowClaim | None:
 def _claims(case: Case, finding: Finding) -> list[AnyClaim]:
     """Durations and numbers beside them, which the rules judge without a search for an optimum."""
     # Tables alike are set beside an optimum, so totals are asked about where they must be.
-    kinds = (*_DECIDED_AT_ONCE, TotalTimeClaim) if finding.rule == "TG105" else _DECIDED_AT_ONCE
+    kinds = _AT_ONCE | TotalTimeClaim if finding.rule == "TG105" else _AT_ONCE
     return [c for c in case.claims if isinstance(c, kinds)]
 
 
@@ -380,7 +348,7 @@ def _touched(case: Case, finding: Finding, slip: Slip) -> list[AnyClaim]:
         if c.id in own | {finding.claim}
         or isinstance(c, ImprovementClaim | TotalTimeClaim)
         or (isinstance(c, MaximumClaim) and own.intersection(c.of))
-        or (isinstance(c, _VALUES) and own & {m.id for m in motions_of(case.claims, c)})
+        or (isinstance(c, MotionValueClaim) and own & {m.id for m in motions_of(case.claims, c)})
     ]
 
 
@@ -389,11 +357,8 @@ def _rules(finding: Finding) -> set[str]:
 
 
 def _of(findings: Iterable[Finding]) -> _Against:
-    return frozenset(
-        (f.rule, f.claim)
-        for f in findings
-        if f.severity is not Severity.INFO and f.verdict in _CONTRADICTED
-    )
+    against = (f for f in findings if f.severity is not Severity.INFO and f.verdict in AGAINST)
+    return frozenset((f.rule, f.claim) for f in against)
 
 
 def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:

@@ -7,15 +7,8 @@ import numpy as np
 from ...nlp import Evidence
 from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
-from ..documents import Basis, Finding
 from .printed_row import PrintedRow
 from .rounding import ROUNDING, RoundingBox
-
-BELOW_AT_RATIOS = (
-    "The whole printed interval lies below it; other ratios of the durations, other limits, "
-    "another reading or other digits may explain that."
-)
-"""What explains a printed total below the shortest one at fixed ratios."""
 
 
 def optimum_called(problem: Problem, evidence: Evidence) -> str:
@@ -43,7 +36,6 @@ def off_ratios(row: PrintedRow[Claim]) -> str | None:
 
     They are in the ratios that it fixes if some durations and ratios agree, of all whose digits
     were rounded or cut off to those printed.
-
     """
     problem = row.study.problem(row.pair)
     if problem.shares is None or not row.study.case.printed_durations(row.claim):
@@ -62,28 +54,6 @@ def off_ratios(row: PrintedRow[Claim]) -> str | None:
     return (
         f"durations in the ratios {_shown(own)}, and this reading fixes {_shown(problem.shares)} "
         "(shares of the total)"
-    )
-
-
-def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
-    """That printed durations are not those of a question that fixes other ratios.
-
-    Parameters
-    ----------
-    shown : str
-        The printed total.
-    other : str
-        From `off_ratios`.
-    """
-    return row.finding(
-        "TG302",
-        "other ratios",
-        f"Printed are {other}.",
-        "They answer a question other than the shortest total at these ratios, and are not "
-        "compared with it.",
-        basis=Basis.DIGITS,
-        printed=shown,
-        decides=False,
     )
 
 

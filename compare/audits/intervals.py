@@ -1,30 +1,61 @@
-"""Proved intervals for an audit: shipped, given in files, or certified within a time budget."""
+"""Options of an audit, and its proved intervals: shipped, given in files, or certified in time."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from ...nlp import ExactProblem, Outcome, ProvedInterval, certificate, certify, proved
 from ...nlp.proofs import allowance, covered, interval_of
 from ...problem import TrajgapError
 from ...verify import Subject
-from .options import AuditOptions
 
+SEEDS = 100
+"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
 ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
 not seconds, so no verdict depends on how busy the machine is."""
 
 
-class Intervals:
-    """Where the proved intervals of one audit come from.
+@dataclass(frozen=True, kw_only=True)
+class AuditOptions:
+    """Options of an audit; the fields are the parameters of `audit`.
 
-    Parameters
-    ----------
-    options : AuditOptions
+    Raises
+    ------
+    TrajgapError
+        If there are fewer than two seeds.
     """
+
+    seeds: int = SEEDS
+    workers: int | None = 1
+    problem: str | None = None
+    reading: str | None = None
+    progress: Callable[[str], None] | None = None
+    certify_seconds: float | None = None
+    certificates: Sequence[dict[str, Any]] = ()
+    certificates_folder: str | None = None
+    draft: bool = False
+    cache: bool | Path = False
+
+    def __post_init__(self) -> None:
+        if self.seeds < 2:
+            raise TrajgapError(
+                f"seeds: {self.seeds} show no spread; give 2 or more, 30 is customary"
+            )
+
+
+USUAL = AuditOptions()
+"""The options of an audit that names none."""
+
+
+class Intervals:
+    """Where the proved intervals of one audit come from."""
 
     def __init__(self, options: AuditOptions) -> None:
         seconds = options.certify_seconds
@@ -72,10 +103,9 @@ class Intervals:
         found = self._by_document(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
-        # 1 / 3: of what is left of the budget, for one problem: later ones get their turn too.
-        share = self._left * (1 / 3)
-        # 0.1: allowances below which no further search is begun: it would prove nothing.
-        # 0.5: the same of a budget in seconds.
+        # A third of what is left, so that later problems get their turn too. With less than a tenth
+        # of an allowance, or half a second, a search would prove nothing.
+        share = self._left / 3
         if share < (0.1 if self._counted else 0.5):
             if self._left > 0:
                 left = "no boxes were" if self._counted else "no time was"
@@ -89,8 +119,7 @@ class Intervals:
             self._progress(f"certifying {called}, at most {amount}")
         began = time.monotonic()
         try:
-            # 1e-4: relative width that is asked for: far below the digits that papers print, and
-            # cheap to reach.
+            # This gap is far below the digits that papers print, and cheap to reach.
             answer = certify(problem, gap=1e-4, seconds=seconds, boxes=boxes, cache=self._cache)
         except TrajgapError:
             return None  # nothing limits its total

@@ -44,10 +44,6 @@ class KeptOptima(KeptFiles):
         again : bool
             Whether some of the searches are made again, as `KeptFiles.answers` does. Check and
             optimality conditions judge every answer either way.
-
-        Returns
-        -------
-        sequence of Solution
         """
         return self.answers(
             lambda: {"problems": [one.words() for one in asked], "code": search_code()},

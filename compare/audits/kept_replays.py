@@ -53,12 +53,6 @@ class KeptReplays(KeptFiles):
         ----------
         asked : sequence of AskedReplay
             A group that is kept, judged and discarded as a whole.
-        compute : callable
-            Makes the runs, in this order.
-
-        Returns
-        -------
-        tuple of Run
         """
         return self.answers(
             lambda: _question(asked),
@@ -91,11 +85,6 @@ class KeptReplays(KeptFiles):
             Processes; as many as pay if None.
         progress : callable
             Called with what an algorithm is called before it runs.
-
-        Returns
-        -------
-        dict
-            Under the same words.
         """
         apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
         single = [problem.joint(j) for j in range(len(problem.joints))] if apart else [problem]
@@ -109,7 +98,10 @@ class KeptReplays(KeptFiles):
         def compute() -> Iterator[Run]:
             for called, one in algorithms.items():
                 progress(called)
-                use = _worth(seeds * one.iterations) if workers is None else workers
+                # Fewer iterations take some seconds side by side, and each process takes two to
+                # import what it needs.
+                worth = (os.cpu_count() or 1) if seeds * one.iterations >= 50_000 else 1
+                use = worth if workers is None else workers
                 if apart:
                     for joints in run_many_per_joint(one, problem, range(seeds), use):
                         yield from joints.runs
@@ -126,13 +118,6 @@ class KeptReplays(KeptFiles):
                 else tuple(each[0] for each in mine)
             )
         return found
-
-
-def _worth(iterations: int) -> int:
-    """Processes that pay for so many iterations of all seeds."""
-    # 50_000: iterations of all seeds of a replay from which further processes pay: fewer take some
-    # seconds side by side, and each process takes two to import what it needs.
-    return (os.cpu_count() or 1) if iterations >= 50_000 else 1
 
 
 def _question(asked: Sequence[AskedReplay]) -> dict[str, Any]:

@@ -17,14 +17,8 @@ from .rounding import FEW_ROUNDINGS
 def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The profile of the algorithm, which is not the shortest where it shrinks the acceleration.
 
-    It is None if the algorithm has no answer.
-
-    Parameters
-    ----------
-    start, finish : AxisState
-        Accelerations of 0, velocities within the limit.
-    sizes : Sizes
-        Finite.
+    Its ends have no acceleration and velocities within the limit, and its sizes are finite. It is
+    None if the algorithm has no answer.
 
     Notes
     -----
@@ -47,8 +41,7 @@ def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile |
     if cruise > 0.0:
         return _of_parts(start, (*lengths,), (*ramps,), cruise, jerk)
     size = sizes.acceleration
-    # 10_000: bound of that loop; 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴.
-    for _ in repeat(None, 10_000):
+    for _ in repeat(None, 10_000):  # 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴
         ramp = size / jerk
         root = (
             size**4 / jerk**2 + 2.0 * (v0**2 + v1**2) + size * (4.0 * way - 2.0 * ramp * (v0 + v1))
@@ -60,8 +53,7 @@ def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile |
             return _one_sided(start, way, v1, jerk, falling=both[0] < 0.0)
         if min(both) >= 2.0 * ramp:
             return _of_parts(start, (*both,), (ramp, ramp), 0.0, jerk)
-        # 0.99: factor by which the book shrinks the acceleration until its formulas close: with it,
-        # Example 3.11 ends at the printed 6.9641 = 10·0.99³⁶.
+        # With the book's factor, its Example 3.11 ends at the printed 6.9641 = 10·0.99³⁶.
         size *= 0.99
     return None
 
@@ -149,7 +141,7 @@ def _to_plateau(
     velocity: float, acceleration: float, speed: float, sizes: Sizes
 ) -> tuple[list[Phase], float]:
     """Phases from a state to a speed that is kept, and their way."""
-    # 16.0 / 35.0: mean of the impulse 64 t³(1 − t)³ from 0 to 1; its largest value is 1.
+    # The impulse 64 t³(1 − t)³ has the mean 16/35 from 0 to 1, and its largest value is 1.
     jerk, phases, way = (16.0 / 35.0) * sizes.jerk, [], 0.0
 
     def impulse(end: float) -> None:
@@ -157,7 +149,7 @@ def _to_plateau(
         change = end - acceleration
         time = abs(change) / jerk
         phases.append(Phase(time, acceleration, copysign(jerk, change)))
-        # 5.0 / 36.0: way in the time 1 while such an impulse raises the acceleration from 0 to 1.
+        # While such an impulse raises the acceleration from 0 to 1 in the time 1, the way is 5/36.
         way += time * (velocity + time * (acceleration / 2.0 + change * (5.0 / 36.0)))
         velocity += time * (acceleration + end) / 2.0
         acceleration = end

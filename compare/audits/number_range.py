@@ -9,7 +9,7 @@ import numpy as np
 
 from ...problem import Array
 from .profile_motions import ProfileMotion
-from .rounding import ROUNDING, meet
+from .rounding import ROUNDING, Ends, meet
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class NumberRange:
         jump = _jump(found, number, gradual)
         return cls(plain, np.sort([*(value for value, _ in found), *(jump or ())]), jump)
 
-    def meets(self, lower: float, upper: float) -> bool:
+    def meets(self, printed: Ends) -> bool:
         """Whether a printed interval holds a value, each side of a jump by itself."""
         parts = [self.others]
         if self.jump is not None:
@@ -57,13 +57,13 @@ class NumberRange:
         for part in parts:
             # As much again, because corners need not be the extremes of a curved function.
             width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
-            if meet((lower, upper), (part[0] - width, part[-1] + width)):
+            if meet(printed, (part[0] - width, part[-1] + width)):
                 return True
         return False
 
-    def spans(self, lower: float, upper: float) -> bool:
+    def spans(self, printed: Ends) -> bool:
         """Whether a printed interval lies among the values, where they jump over it."""
-        return meet((lower, upper), (self.others[0], self.others[-1]))
+        return meet(printed, (self.others[0], self.others[-1]))
 
 
 def _jump(
@@ -73,26 +73,19 @@ def _jump(
 ) -> tuple[float, float] | None:
     """The values on both sides of the widest gap, where inputs are brought together over it.
 
-    It is None if that closes the gap.
-
-    Parameters
-    ----------
-    found : sequence of (float, ProfileMotion)
-        Values in order, and the motion of each.
+    It is None if that closes the gap. Values stand in order, each with its motion.
     """
     gaps = np.diff([value for value, _ in found])
     if not len(gaps):
         return None
     at = int(np.argmax(gaps))
-    # 0.01: share of a number by which its values for numerically equal inputs must differ to be
-    # called a jump.
+    # A jump: values for numerically equal inputs differ by more than one per cent.
     least = 0.01 * abs(found[0][0])
     if gaps[at] <= max(0.5 * gaps.sum(), least):
         return None
     low, high = found[at : at + 2]
     middle = (low[0] + high[0]) / 2.0
-    # 40: times that two inputs are brought halfway together: what they leave of each other is
-    # rounding.
+    # Brought halfway together forty times, two inputs differ by rounding only.
     for _ in range(40):
         between = low[1].asked(low[1].question.halfway(high[1].question))
         if between is None:

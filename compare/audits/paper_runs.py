@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from importlib.resources import files
 from typing import Annotated, Literal
@@ -11,7 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from ...nlp import problem_seal
-from ..documents import Gap, Reached, Reference, TargetReached, Why, known
+from ..documents import Gap, Reached, Reference, Why, known
 from ..gaps import canonical, gap, quantiles, reference_of, target_reached
 from .fixed_ratios import planned_apart
 from .study import Pair, Study
@@ -126,6 +125,11 @@ def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reache
     best, low, median, high = quantiles(totals, (0.0, 0.25, 0.5, 0.75))
     reference = _reference(study, group)
     spent = np.array([run.evaluations for run in group.runs], dtype=np.float64)
+    hits = np.array([[np.inf if one is None else one for one in run.reached] for run in group.runs])
+    proved = reference is not None and not isinstance(reference.lower, Why)
+    beside = "the optimum" if proved else "the best known total"
+    beside = beside if group.seal else f"{beside} on drawn way-points"
+    beside = "what the joints' own optima give" if group.apart else beside
     return Reached(
         problem=group.problem,
         reading=group.reading,
@@ -144,35 +148,20 @@ def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reache
                 strict=True,
             )
         },
-        beside=_beside(group, reference),
+        beside=beside,
         best_gap=_gap(best, reference),
         gap=_gap(median, reference),
-        within=tuple(_targets(group, within, spent)),
+        within=tuple(
+            target_reached(wanted, hits[:, at], spent) for at, wanted in enumerate(within)
+        ),
         totals=tuple(np.sort(totals[np.isfinite(totals)]).tolist()),
     )
-
-
-def _beside(group: KeptRuns, reference: Reference | None) -> str:
-    if group.apart:
-        return "what the joints' own optima give"
-    proved = reference is not None and not isinstance(reference.lower, Why)
-    best = "the optimum" if proved else "the best known total"
-    return best if group.seal else f"{best} on drawn way-points"
 
 
 def _gap(total: float, reference: Reference | None) -> Gap | Why:
     if reference is None:
         return Why(_NO_OPTIMUM)
     return gap(float(total), reference) if np.isfinite(total) else Why(_NO_ANSWER)
-
-
-def _targets(
-    group: KeptRuns, within: tuple[float, ...], spent: np.ndarray
-) -> Iterator[TargetReached]:
-    for at, wanted in enumerate(within):
-        hits = [run.reached[at] for run in group.runs]
-        found = np.array([np.inf if one is None else one for one in hits])
-        yield target_reached(wanted, found, spent)
 
 
 def _reference(study: Study, group: KeptRuns) -> Reference | None:

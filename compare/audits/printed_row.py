@@ -28,10 +28,9 @@ from ...problem import (
 )
 from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
 from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
-from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .rounding import BOXES, RoundingBox, RoundingVerdict, excludes_total, judge_rounding
 from .stated import RowClaim, in_words, in_words_among, own_total, place
 from .study import Pair, Study, Total
-from .total_bound import BOXES, excludes_total
 
 C = TypeVar("C", bound=Claim, covariant=True)
 T = TypeVar("T")
@@ -45,8 +44,6 @@ class PrintedRow(Generic[C]):
     ----------
     claim : Claim
         A claim with durations or a total, for methods that return a motion or a time.
-    pair : Pair
-        Problem and reading.
     """
 
     study: Study
@@ -114,6 +111,12 @@ class PrintedRow(Generic[C]):
         """A number in rad or m and s, converted to the printed unit of its quantity; see `unit`."""
         unit, _ = self._unit(quantity, joint)
         return value if unit is None else from_si(value, unit)
+
+    def shown(
+        self, quantity: str, value: float, joint: str | None = None, form: str = ".6g"
+    ) -> str:
+        """The same as a sentence writes it, with its unit."""
+        return f"{self.in_units(quantity, value, joint):{form}} {self.unit(quantity, joint)}"
 
     def time(self, number: Printed) -> Measured:
         """A printed time of the claim, s, with the interval that rounds to its digits."""

@@ -94,18 +94,13 @@ class ProfileQuestion:
 
 @dataclass(frozen=True)
 class ProfileMotion:
-    """A profile with the way-points that it joins.
-
-    Attributes
-    ----------
-    profile : str
-        A key of `SHORTEST`.
-    """
+    """A profile with the way-points that it joins."""
 
     question: ProfileQuestion
     laws: tuple[AxisProfile, ...]
     straight: bool
     profile: str = "s-curve"
+    """A key of `SHORTEST`."""
 
     @classmethod
     def of(cls, question: ProfileQuestion, profile: str, straight: bool) -> ProfileMotion | None:
@@ -119,7 +114,7 @@ class ProfileMotion:
 
     def near_to(self, question: ProfileQuestion) -> ProfileMotion:
         """The same for other numbers, or for those nearest to them on the way from its own."""
-        # 6: times that numbers at which no profile exists are brought halfway to the printed ones.
+        # Numbers at which no profile exists are brought halfway to the printed ones, a few times.
         for _ in range(6):
             one = self.asked(question)
             if one is not None:
@@ -180,27 +175,12 @@ class ProfileMotion:
         return (*lengths, *ramps)  # type: ignore[return-value]
 
     def near(self, time: float, joint: int) -> Array:
-        """Position, velocity and acceleration of a joint just before and just after an instant.
-
-        Parameters
-        ----------
-        time : float
-            s from the start.
-
-        Returns
-        -------
-        ndarray, shape (2, 3)
-        """
+        """Position, velocity and acceleration just before and after an instant, s, shape (2, 3)."""
         close = ROUNDING * self.total_time
         return np.array([self._at(time - close, joint), self._at(time + close, joint)])
 
     def states(self, joint: int) -> Array:
-        """States between which everything rises or falls, on both sides of what jumps.
-
-        Returns
-        -------
-        ndarray, shape (states, 3)
-        """
+        """States between which all rises or falls, also where it jumps, shape (states, 3)."""
         found: list[AxisState] = []
         for k, law in enumerate(self.laws):
             state = law.start
@@ -326,11 +306,6 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion]
 
     The list is empty if no profile was found at the printed numbers; if that profile is prescribed,
     it is the profiles at the others.
-
-    Parameters
-    ----------
-    profile : str
-        A key of `SHORTEST`.
     """
 
     def compute() -> list[ProfileMotion]:

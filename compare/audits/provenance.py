@@ -26,13 +26,7 @@ _EPOCH = "SOURCE_DATE_EPOCH"
 
 
 def provenance(study: Study, day: date | None = None) -> Provenance:
-    """Everything that is needed to cite an audit and to make it again.
-
-    Parameters
-    ----------
-    day : date, optional
-        Of the audit; `today` by default.
-    """
+    """Everything that is needed to cite an audit and to make it again."""
     day = day or today()
     own = package_version("trajgap")
     python = ".".join(str(x) for x in sys.version_info[:3])
@@ -91,7 +85,7 @@ def commit() -> str | Why:
 
 
 def _git(folder: Path, *arguments: str) -> str:
-    # 5: time that git gets to name the commit; it needs a hundredth of that.
+    # Git needs a hundredth of this time to name the commit.
     done = subprocess.run(
         ("git", "-C", str(folder), *arguments),
         capture_output=True,

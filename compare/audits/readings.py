@@ -44,15 +44,7 @@ ALIKE_READINGS = 1e-6
 def readings_summary(
     study: Study, waterfalls: Iterable[Waterfall], judgements: Iterable[Judgement]
 ) -> ReadingsSummary | None:
-    """Set the readings of a case side by side; None if there is only one.
-
-    Parameters
-    ----------
-    waterfalls : iterable of Waterfall
-        They name the printed answer of each problem.
-    judgements : iterable of Judgement
-        Of the claims, over all admissible readings.
-    """
+    """Set the readings of a case side by side; None if there is only one."""
     admissible = tuple(reading.id for reading in study.case.readings)
     if len(admissible) < 2:
         return None
@@ -61,7 +53,9 @@ def readings_summary(
     if not outcomes:
         missing = study.case.statement().waypoints.not_printed
         why = f"no way-points are printed: {missing}" if missing else "no problem is posed"
-    fits = _fits(one for one in outcomes if _shortest(study, one))
+    # A printed answer that is meant as a shortest one uses a limit up.
+    other = {c.id for c in study.case.claims if other_objective(study.case, c) is not None}
+    fits = _fits(one for one in outcomes if one.claim not in other)
     least = fits[0].factor if fits else 0.0
     nearest = tuple(fit.reading for fit in fits if fit.factor <= least * (1 + ALIKE_READINGS))
     tallies = tuple(
@@ -95,9 +89,10 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     pair = Pair(waterfall.problem, waterfall.reading)
     solution = study.optimum(pair)
     reference = reference_of(solution)
-    keeping: Keeping | Why = Why("no durations are printed for all joints of this problem")
+    none = Why("no durations are printed for all joints of this problem")
+    keeping: Keeping | Why = none
+    held: HeldOtherwise | Why = none
     distance: Gap | Why = Why("no printed total can be compared with an optimum")
-    held: HeldOtherwise | Why = Why("no durations are printed for all joints of this problem")
     stretch: float | None = None
     excesses: tuple[Excess, ...] = ()
     jumps = 0
@@ -134,12 +129,6 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         evidence=solution.evidence,
         gap=distance,
     )
-
-
-def _shortest(study: Study, outcome: ReadingOutcome) -> bool:
-    """Whether a printed answer is meant as a shortest one, which uses a limit up."""
-    claim = None if outcome.claim is None else study.case.claim(outcome.claim)
-    return claim is None or other_objective(study.case, claim) is None
 
 
 def _excesses(row: PrintedRow[AnyClaim]) -> tuple[Excess, ...]:
@@ -281,13 +270,10 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
 
 def _away(low: float, high: float) -> str:
     """How far totals are from an optimum, as a share of it or as a multiple."""
-    ends = [_end(low), _end(high)]
-    numbers, words = zip(*ends, strict=True)
+    (least, side), (most, other) = ends = _end(low), _end(high)
     if ends[0] == ends[1]:
-        return " ".join(ends[0])
-    if words[0] == words[1]:
-        return f"{' to '.join(numbers)} {words[0]}"
-    return " to ".join(" ".join(end) for end in ends)
+        return f"{least} {side}"
+    return f"{least} to {most} {side}" if side == other else f"{least} {side} to {most} {other}"
 
 
 def _end(gap: float) -> tuple[str, str]:
@@ -306,14 +292,9 @@ def _of_fit(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iter
         (o.stretch, called(str(o.claim), o.problem)) for o in own if not isinstance(o.stretch, Why)
     ]
     worst, claim = max(stretches, key=lambda one: abs(log(one[0])))
-    there = [
-        *(
-            ["as printed, they break the limits"]
-            if any(o.keeping is Keeping.BREAKS for o in own)
-            else []
-        ),
-        *(["the velocity jumps"] if any(o.jumps for o in own) else []),
-    ]
+    breaks = any(o.keeping is Keeping.BREAKS for o in own)
+    there = "; as printed, they break the limits" if breaks else ""
+    there += "; the velocity jumps" if any(o.jumps for o in own) else ""
     if len(nearest) == len(summary.fits):
         which = "The printed durations are equally far from the limits under every reading"
     else:
@@ -321,7 +302,7 @@ def _of_fit(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iter
         which = f"The printed durations fit best {best}"
     yield (
         f"{which}: multiplied by {worst:.4g}, those of {claim} would just reach the limits, as the "
-        f"shortest motion does{''.join(f'; {x}' for x in there)}. This does not say which reading "
+        f"shortest motion does{there}. This does not say which reading "
         "was meant."
     )
 

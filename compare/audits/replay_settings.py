@@ -87,14 +87,10 @@ def spread_settings(
 
 
 def latin_hypercube(dimensions: int) -> Array:
-    """`DESIGN` places in the unit cube: on each axis, each of as many equal parts holds one.
+    """Places in the unit cube, shape (`DESIGN`, dimensions): each part of an axis holds one.
 
     They are those of ``scipy.stats.qmc.LatinHypercube`` with seed 0, which takes half a second to
     import.
-
-    Returns
-    -------
-    ndarray, shape (DESIGN, dimensions)
     """
     (rng,) = np.random.default_rng(0).spawn(1)
     inside = rng.uniform(size=(DESIGN, dimensions))

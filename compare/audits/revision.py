@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import pickle
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from decimal import ROUND_CEILING, Decimal
+from itertools import islice
+from typing import Any, cast
 
 import numpy as np
 
-from ...nlp import Status
-from ...problem import Array, Case, Problem, Verdict, check, from_si
+from ...nlp import PerJointSolution, Solution, Status, printed_problem_or_none
+from ...problem import Array, Case, Printed, Problem, Verdict, check, from_si
 from ...problem.cases import (
     AnyClaim,
     ControlVerticesClaim,
@@ -23,11 +26,129 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
+from .kept_replays import Replays
 from .printed_row import PrintedRow, rows_under
-from .reworded import CLAIM, READINGS, Reworded, edited, printed_under
+from .roots import CLAIM, READINGS
 from .rules import in_digits, recomputed, repeated_total, summed
 from .stated import RowClaim
-from .study import Study
+from .study import Pair, Study
+
+
+def edited(case: Case, edits: Iterable[Edit]) -> Case:
+    """The case as it reads after edits.
+
+    It counts as not read from a file.
+    """
+    claims = {claim.id: claim for claim in case.claims}
+    readings = case.document.readings
+    for edit in edits:
+        if edit.claim is None:
+            readings = tuple(one for one in readings if one.id in edit.becomes)
+        elif edit.key == CLAIM:
+            claims.pop(edit.claim, None)
+        elif edit.claim in claims:
+            claim = claims[edit.claim]
+            value = _shaped(getattr(claim, edit.key), edit.becomes)
+            claims[edit.claim] = claim.model_copy(update={edit.key: value})
+    document = case.document.model_copy(
+        update={"claims": tuple(claims.values()), "readings": readings}
+    )
+    return replace(case, document=document, sha256=None)
+
+
+def printed_under(claim: AnyClaim, key: str) -> tuple[str, ...]:
+    """What a claim prints under a key, number by number; its words where it is meant as a whole."""
+    if key == CLAIM:
+        return (claim.text,) if claim.text else ()
+    return tuple(map(str, _flat(getattr(claim, key))))
+
+
+def _flat(value: Any) -> list[Any]:
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [one for part in value for one in _flat(part)]
+    return [] if value is None else [value]
+
+
+def _shaped(before: Any, digits: Sequence[str]) -> Any:
+    """Digits in the shape of what stood there."""
+    numbers = iter([Printed(one) for one in digits])
+    if not isinstance(before, tuple):
+        return next(numbers)
+    if before and isinstance(before[0], tuple):
+        return tuple(tuple(islice(numbers, len(row))) for row in before)
+    return tuple(numbers)
+
+
+class Reworded(Study):
+    """A study of a changed case, which asks the original for what the change leaves alone.
+
+    Parameters
+    ----------
+    case : Case
+        The original's, with other claims, readings or algorithms.
+    """
+
+    def __init__(self, case: Case, original: Study, certify_seconds: float | None = None) -> None:
+        reading = original.options.reading
+        super().__init__(
+            case,
+            original.options,
+            reading=reading if reading in {one.id for one in case.readings} else None,
+            certify_seconds=certify_seconds,
+            certificates=(),
+            certificates_folder=None,
+            cache=False,
+        )
+        self.original = original
+
+    def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
+        """The original's, where it is the same question."""
+        return self._asked(self._alike(pair)).optimum(pair, joint)
+
+    def per_joint(self, pair: Pair) -> PerJointSolution:
+        """The original's, where it is the same question to the same digits."""
+        same = self._alike(pair) and self.half_digits(pair) == self.original.half_digits(pair)
+        return self._asked(same).per_joint(pair)
+
+    def relaxed(self, pair: Pair) -> Solution:
+        """The original's, where it is the same question."""
+        return self._asked(self._alike(pair)).relaxed(pair)
+
+    def runs(self, algorithm_id: str, pair: Pair) -> Replays:
+        """The original's, where the same algorithms search for the same."""
+        return self._asked(self._replays_alike(pair)).runs(algorithm_id, pair)
+
+    def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
+        """The original's, where the same algorithms search for the same."""
+        return self._asked(self._replays_alike(pair)).spread_runs(algorithm_id, pair)
+
+    @property
+    def drawing(self) -> Study:
+        """The original, where all problems and algorithms are the same."""
+        same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
+        return self.original if same else self
+
+    def _asked(self, same: bool) -> Study:
+        """Who answers: the original what it answers alike, else this study as any other."""
+        return self.original if same else cast(Study, super())
+
+    def _alike(self, pair: Pair) -> bool:
+        """Whether the changed case poses the very same problem, digit by digit."""
+        if pair not in self.original.pairs:
+            return False
+        return self.once(("alike", pair), lambda: self._compared(pair))
+
+    def _compared(self, pair: Pair) -> bool:
+        one, other = (s.case.statement(*pair) for s in (self, self.original))
+        exact = printed_problem_or_none(one, None) == printed_problem_or_none(other, None)
+        return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
+
+    def _replays_alike(self, *pairs: Pair) -> bool:
+        mine, theirs = (
+            (s.case.algorithms, s.case.document.families) for s in (self, self.original)
+        )
+        return mine == theirs and all(self._alike(pair) for pair in pairs)
+
 
 _LIMITS = ("TG201", "TG302", "TG303")
 """Rules that speak against a time itself, and not against how it is added up or repeated."""
@@ -47,18 +168,14 @@ def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> t
 
     Parameters
     ----------
-    study : Study
-        Of the draft.
-    first : (findings, judgements)
-        Of its audit.
     again : callable
         Audits the edited draft.
     """
     draft = _Draft(study)
     tried: Counter[str] = Counter()
     found = first
-    # 5: audits of the edited draft at most: durations change what rests on them in one, a sentence
-    # that no number mends is left out in the next, and one more shows that nothing is left.
+    # Durations change what rests on them in one audit, a sentence that no number mends is left out
+    # in the next, and one more shows that nothing is left; two more are in reserve.
     for _ in range(5):
         pressing = _pressing(draft.case, *found)
         before = dict(draft.edits)
@@ -96,14 +213,15 @@ class _Draft:
     def put(self, claim: str | None, key: str, digits: Sequence[str], trigger: str | None) -> None:
         """Change one thing that stands in the edited draft."""
         case = self.original.case
-        if claim is None:
-            stands = tuple(one.id for one in case.readings)
-        else:
-            stands = printed_under(case.claim(claim), key)
+        readings = tuple(one.id for one in case.readings)
+        stands = readings if claim is None else printed_under(case.claim(claim), key)
         old = self.edits.get((claim, key))
-        trigger = trigger if old is None else old.trigger
         self.edits[claim, key] = Edit(
-            claim=claim, key=key, printed=stands, becomes=tuple(digits), trigger=trigger
+            claim=claim,
+            key=key,
+            printed=stands,
+            becomes=tuple(digits),
+            trigger=trigger if old is None else old.trigger,
         )
         self._study = None
 
@@ -149,10 +267,11 @@ def _mend(draft: _Draft, claim: AnyClaim, rules: set[str], tried: Counter[str]) 
     if READINGS in rules and not tried[claim.id] and len(draft.case.readings) > 1:
         draft.put(None, READINGS, (draft.study.main_reading,), claim.id)
         return
+    about_times, first = bool(rules & {*_LIMITS}), not tried[claim.id]
     if isinstance(claim, StatementClaim):
         about = [draft.case.claim(one) for one in claim.of]
         mended = False
-        if claim.checks == "optimal" and not tried[claim.id]:
+        if claim.checks == "optimal" and first:
             done = [_shorten(draft, one, claim.id) for one in about]
             mended = all(done)
         elif claim.checks == "within_limits" and tried[claim.id] < 2:
@@ -161,15 +280,15 @@ def _mend(draft: _Draft, claim: AnyClaim, rules: set[str], tried: Counter[str]) 
         if not mended:
             draft.put(claim.id, CLAIM, (), claim.id)
     elif isinstance(claim, RowClaim):
-        if rules & {*_LIMITS}:
+        if about_times:
             _lengthen(draft, claim, claim.id)
         if rules - {*_LIMITS}:
             _renew(draft, claim, claim.id)
     elif isinstance(claim, TotalTimeClaim):
         other = repeated_total(draft.study, claim)
-        if other is not None and not (rules & {*_LIMITS} and tried[claim.id]):
+        if other is not None and (first or not about_times):
             _repeat(draft, claim, other, claim.id)
-        elif rules & {*_LIMITS}:
+        elif about_times:
             _shorten(draft, claim, claim.id)
     elif isinstance(claim, _Numbers) and (
         tried[claim.id] > 1 or not _renew(draft, claim, claim.id)
@@ -297,8 +416,8 @@ def _print(
     places = max(one.places for one in claim.durations)
     step = Decimal(1).scaleb(-max(places, 0))
     least = [Decimal(from_si(float(h), unit)).quantize(step, ROUND_CEILING) for h in durations]
-    # 20: units of the last digit by which rounded durations are lengthened at most until they keep
-    # the limits: rounding up alone nearly always does, because longer segments are slower ones.
+    # Rounding up alone nearly always keeps the limits, because longer segments are slower ones;
+    # else all durations are lengthened by further units of the last digit.
     for up in range(20):
         tried = [value + up * step for value in least]
         seconds = np.array([float(value) for value in tried]) / from_si(1.0, unit)

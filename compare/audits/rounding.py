@@ -1,4 +1,4 @@
-"""A printed solution judged however its digits were rounded."""
+"""A printed solution judged however its digits were rounded, and totals that no motion takes."""
 
 from __future__ import annotations
 
@@ -109,16 +109,15 @@ class RoundingBox:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         if not self.value.shape == self.lower.shape == self.upper.shape:
-            raise TrajgapError(
-                "box: value, lower and upper differ in shape; give all three the same shape"
-            )
+            why = "value, lower and upper differ in shape; give all three the same shape"
+            raise TrajgapError(f"box: {why}")
         if not all(np.isfinite(a).all() for a in (self.value, self.lower, self.upper)):
             raise TrajgapError("box: a number is not finite; give finite bounds")
         if (self.lower > self.value).any() or (self.value > self.upper).any():
             raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
 
     @classmethod
-    def of(cls, numbers: Iterable[Measured]) -> RoundingBox:
+    def of(cls, numbers: Iterable[Measured | Printed]) -> RoundingBox:
         """Box of printed numbers, shape (numbers,)."""
         ends = zip(*((one.value, one.lower, one.upper) for one in numbers), strict=True)
         return cls(*map(np.array, ends))
@@ -182,7 +181,6 @@ def judge_rounding(
     problem: Problem,
     durations: RoundingBox,
     waypoints: RoundingBox | None = None,
-    tolerance: float = TOLERANCE,
     loosest: Problem | None = None,
     loose_ends: bool = False,
 ) -> RoundingVerdict:
@@ -197,8 +195,6 @@ def judge_rounding(
         s.
     waypoints : RoundingBox, shape (way-points, joints), optional
         rad, instead of the problem's own, which are used as exact by default.
-    tolerance : float
-        Relative excess over a limit that still counts as keeping it, as in `check`.
     loosest : Problem, optional
         The same problem with every limit and every bound on durations as loose as its printed
         digits allow; by default they are exact.
@@ -218,19 +214,16 @@ def judge_rounding(
     rounding can upset (`bound` and `interval`). A velocity that jumps is not an excess over a
     limit: where nothing else is wrong, the answer is `undecided`.
     """
-    if loose_ends:
-        found = judge_rounding(problem, durations, waypoints, tolerance, loosest)
-        breaks = found.verdict is Rounding.BREAKS
-        undecided = RoundingVerdict(Rounding.UNDECIDED, found.worst_at_print, None, None)
-        return undecided if breaks else found
-    found = _judge(problem, durations, waypoints, tolerance)
+    found = _judge(problem, durations, waypoints)
+    kept = (Rounding.KEEPS, Rounding.CONSISTENT)
     exact = loosest is None or same_limits(problem, loosest)
-    if loosest is None or exact or found.verdict in (Rounding.KEEPS, Rounding.CONSISTENT):
-        return found
-    wide = _judge(loosest, durations, waypoints, tolerance)
-    kept = wide.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
-    verdict = Rounding.CONSISTENT if kept else wide.verdict
-    return replace(wide, verdict=verdict, worst_at_print=found.worst_at_print)
+    if loosest is not None and not exact and found.verdict not in kept:
+        wide = _judge(loosest, durations, waypoints)
+        verdict = Rounding.CONSISTENT if wide.verdict in kept else wide.verdict
+        found = replace(wide, verdict=verdict, worst_at_print=found.worst_at_print)
+    if loose_ends and found.verdict is Rounding.BREAKS:
+        return RoundingVerdict(Rounding.UNDECIDED, found.worst_at_print, None, None)
+    return found
 
 
 def same_limits(one: Problem, other: Problem) -> bool:
@@ -246,7 +239,7 @@ def same_limits(one: Problem, other: Problem) -> bool:
 
 
 def _judge(
-    problem: Problem, durations: RoundingBox, waypoints: RoundingBox | None, tolerance: float
+    problem: Problem, durations: RoundingBox, waypoints: RoundingBox | None
 ) -> RoundingVerdict:
     q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
     if q.value.shape != problem.waypoints.shape:
@@ -254,126 +247,101 @@ def _judge(
             f"waypoints: the box has shape {q.value.shape}, "
             f"but the problem has {problem.waypoints.shape}; give both the same shape"
         )
-    printed = replace(problem, waypoints=q.value)
-    at_print = check(printed, durations.value, tolerance=tolerance)
+    at_print = check(replace(problem, waypoints=q.value), durations.value)
     worst = 0.0 if at_print.worst is None else at_print.worst.ratio
     if at_print.verdict is Verdict.PASS:
-        point = Point(durations.value, q.value)
-        return RoundingVerdict(Rounding.KEEPS, worst, point, None)
-
-    outside = _outside_bounds(problem, durations, tolerance)
+        return RoundingVerdict(Rounding.KEEPS, worst, Point(durations.value, q.value), None)
+    outside = _outside_bounds(problem, durations)
     if outside is not None:
         return RoundingVerdict(Rounding.BREAKS, worst, outside, outside.lower_bound)
     if at_print.worst is not None and at_print.worst.quantity == "curve":
         # Bounds are built around the printed point, which defines no curve here.
         return RoundingVerdict(Rounding.UNDECIDED, worst, None, None)
     ball = Ball.between(q.lower, q.upper)
-    target = 1.0 + tolerance
-    least, most = _admissible(problem, durations, tolerance)
+    target = 1.0 + TOLERANCE
+    least, most = _admissible(problem, durations)
     root = bound_ratio(problem, least, most, ball)
     if root.value > target:
         return RoundingVerdict(Rounding.BREAKS, worst, root.place, root.value)
     best, passed = _search(problem, durations, q, at_print)
     if passed:
-        return RoundingVerdict(Rounding.CONSISTENT, worst, best, _positive(root.value))
+        return RoundingVerdict(Rounding.CONSISTENT, worst, best, max(root.value, 0.0) or None)
     found = rows_at(replace(problem, waypoints=best.waypoints), best.durations)
     if found.ratios().max(initial=-np.inf) <= target:
-        return RoundingVerdict(Rounding.UNDECIDED, worst, None, _positive(root.value))
+        return RoundingVerdict(Rounding.UNDECIDED, worst, None, max(root.value, 0.0) or None)
     proof = bound_by_bisection(problem, root, ball, target, found)
     if proof.value > target:
         return RoundingVerdict(Rounding.BREAKS, worst, proof.place, proof.value)
-    return RoundingVerdict(Rounding.UNDECIDED, worst, None, _positive(proof.value))
+    return RoundingVerdict(Rounding.UNDECIDED, worst, None, max(proof.value, 0.0) or None)
 
 
-def _positive(value: float) -> float | None:
-    return value if value > 0.0 else None
-
-
-def _outside_bounds(problem: Problem, durations: RoundingBox, tolerance: float) -> Place | None:
+def _outside_bounds(problem: Problem, durations: RoundingBox) -> Place | None:
     """The duration that lies farthest outside its bounds wherever in the box it is, if any."""
     short = problem.duration_lower / np.maximum(durations.upper, np.finfo(np.float64).tiny)
     long = durations.lower / problem.duration_upper
     ratio = np.nextafter(np.maximum(short, long), -np.inf)
     k = int(np.argmax(ratio))
-    if not ratio[k] > 1.0 + tolerance:
+    if not ratio[k] > 1.0 + TOLERANCE:
         return None
     return Place(None, "duration", k, None, float(ratio[k]))
 
 
-def _admissible(problem: Problem, durations: RoundingBox, tolerance: float) -> tuple[Array, Array]:
+def _admissible(problem: Problem, durations: RoundingBox) -> tuple[Array, Array]:
     """All of the box that `check` does not refuse for a duration outside its bounds."""
-    slack = (1.0 + tolerance) * (1.0 + 4.0 * EPS)
+    slack = (1.0 + TOLERANCE) * (1.0 + 4.0 * EPS)
     lower = np.maximum(durations.lower, problem.duration_lower / slack * (1.0 - 4.0 * EPS))
     upper = np.minimum(durations.upper, problem.duration_upper * slack)
     # An empty range can only come from the last bits: then one end is as good as the other.
     return np.minimum(lower, upper), np.maximum(lower, upper)
 
 
-@dataclass(frozen=True, eq=False)
-class _Region:
-    """Where the search may go."""
-
-    low: Array
-    high: Array
-    waypoint_low: Array
-    waypoint_high: Array
-
-
 def _search(
     problem: Problem, durations: RoundingBox, waypoints: RoundingBox, at_print: Check
 ) -> tuple[Point, bool]:
     """Look for a passing point: cheap candidates, then descent from the best of them."""
-    low, high = durations.inside()
+    least, most = durations.inside()
     # Digits that stand for 0 as well: the search stays where a duration is positive.
-    low = np.maximum(low, 1e-3 * durations.value)
-    low = np.minimum(np.maximum(low, problem.duration_lower), high)
-    high = np.maximum(np.minimum(high, problem.duration_upper), low)
-    region = _Region(low, high, *waypoints.inside())
-    start = np.clip(durations.value, region.low, region.high)
-    angles = np.clip(waypoints.value, region.waypoint_low, region.waypoint_high)
-    candidates = [start, region.high]
+    least = np.maximum(least, 1e-3 * durations.value)
+    least = np.minimum(np.maximum(least, problem.duration_lower), most)
+    most = np.maximum(np.minimum(most, problem.duration_upper), least)
+    start, inner = np.clip(durations.value, least, most), waypoints.inside()
+    angles = np.clip(waypoints.value, *inner)
+    candidates = [start, most]
     if np.isfinite(at_print.stretch):
         repaired = start * (at_print.stretch * (1.0 + FEW_ROUNDINGS))
-        widest = start * (region.high / start).min()
-        candidates[:0] = [np.clip(h, region.low, region.high) for h in (repaired, widest)]
-    best: tuple[float, Point] | None = None
+        widest = start * (most / start).min()
+        candidates[:0] = [np.clip(h, least, most) for h in (repaired, widest)]
+    tried: list[tuple[float, Point]] = []
     for h in candidates:
         point = Point(h, angles)
-        result = _checked(problem, point, at_print.tolerance)
+        result = _checked(problem, point)
         if result.verdict is Verdict.PASS:
             return point, True
-        ratio = np.inf if result.worst is None else result.worst.ratio
-        if best is None or ratio < best[0]:
-            best = ratio, point
-    assert best is not None
-    return _descend(problem, best[1], region, at_print.tolerance)
+        tried.append((np.inf if result.worst is None else result.worst.ratio, point))
+    best = min(tried, key=lambda one: one[0])[1]
+    return _descend(problem, best, np.append(least, inner[0]), np.append(most, inner[1]))
 
 
-def _checked(problem: Problem, point: Point, tolerance: float) -> Check:
-    there = replace(problem, waypoints=point.waypoints)
-    return check(there, point.durations, tolerance=tolerance)
+def _checked(problem: Problem, point: Point) -> Check:
+    return check(replace(problem, waypoints=point.waypoints), point.durations)
 
 
-def _descend(
-    problem: Problem, start: Point, region: _Region, tolerance: float
-) -> tuple[Point, bool]:
+def _descend(problem: Problem, start: Point, low: Array, high: Array) -> tuple[Point, bool]:
     """Lower the worst ratio by sequential linear programs in a trust region.
 
     Every peak's exact gradient by the durations and its joint's way-points makes one row; `reach`
-    is the trust region as a share of the box.
+    is the trust region as a share of the box, whose ends hold durations and then way-points.
     """
-    low = np.concatenate([region.low, region.waypoint_low.ravel()])
-    high = np.concatenate([region.high, region.waypoint_high.ravel()])
     span = high - low
     n, shape = problem.segments, problem.waypoints.shape
-    x = np.concatenate([start.durations, start.waypoints.ravel()])
+    x = np.append(start.durations, start.waypoints)
     point, reach, worst = start, 1.0, np.inf
     trial = point
-    # 12: linear programs of one descent; those that find a passing point need fewer than 5.
+    # Descents that find a passing point need fewer than 5 linear programs.
     for _ in range(12):
         there = replace(problem, waypoints=trial.waypoints)
         try:
-            # 300: peaks that one linear program holds: more of them change its answer no further.
+            # More than 300 peaks in one linear program change its answer no further.
             rows = rows_at(there, trial.durations, 300)
             ratios = rows.ratios()
             ratio = float(ratios.max(initial=-np.inf))
@@ -381,9 +349,9 @@ def _descend(
             ratio = np.inf
         if ratio < worst:
             gain, worst, point = worst - ratio, ratio, trial
-            x = np.concatenate([point.durations, point.waypoints.ravel()])
-            passing = ratio <= 1.0 + tolerance
-            if passing and _checked(problem, point, tolerance).verdict is Verdict.PASS:
+            x = np.append(point.durations, point.waypoints)
+            passing = ratio <= 1.0 + TOLERANCE
+            if passing and _checked(problem, point).verdict is Verdict.PASS:
                 return point, True
             if gain < 1e-13 or not 0.0 < ratio < np.inf:
                 break  # no gain, nothing is limited, or nothing moves as far as rounding tells
@@ -410,3 +378,69 @@ def _descend(
         moved = np.clip(x + solved[0] * span, low, high)
         trial = Point(moved[:n], moved[n:].reshape(shape))
     return point, False
+
+
+BOXES = 1000
+"""Boxes of durations that are examined, each in milliseconds: a few seconds at most, and the result
+does not depend on the machine."""
+
+
+def excludes_total(
+    problem: Problem, total: float, waypoints: RoundingBox | None = None, boxes: int = BOXES
+) -> bool | None:
+    """Prove that no durations of a total or less keep the limits, for all way-points of a box.
+
+    It is True if that is proved, False if nothing is said, None if it would take more boxes. The
+    problem has its limits and bounds on durations where they allow most.
+
+    Notes
+    -----
+    Branch and bound over the durations: the mean speed between way-points bounds each of them
+    from below, and each box either holds no durations so short or has a worst ratio above 1,
+    proved as for `breaks`.
+    """
+    q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
+    ball = Ball.between(q.lower, q.upper)
+    target = 1.0 + TOLERANCE
+    low = _least_durations(problem, q) / target * (1.0 - FEW_ROUNDINGS)
+    low = np.maximum(low, problem.duration_lower / target * (1.0 - FEW_ROUNDINGS))
+    total *= 1.0 + FEW_ROUNDINGS
+    if low.sum() > total:
+        return True
+    # Where coefficients are free, durations alone have no ratios to bound; of more than eight
+    # segments, splitting boxes cannot come to an end in time.
+    if problem.curve.free or not (low > 0.0).all() or problem.segments > 8:
+        return False
+    todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
+    for _ in range(boxes):
+        if not todo:
+            return True
+        least, most = todo.pop()
+        # No duration is longer than what the total leaves beside the least of all others.
+        most = np.minimum(most, total - (least.sum() - least))
+        if (most < least).any():
+            continue
+        bound = bound_ratio(problem, least, most, ball)
+        if bound.value > target:
+            continue
+        widths = most / least
+        k = int(np.argmax(widths))
+        if widths[k] <= 1.0 + 1e-6:
+            return False
+        cut = float(np.sqrt(least[k] * most[k]))
+        upper, lower = most.copy(), least.copy()
+        upper[k] = lower[k] = cut
+        todo += [(least, upper), (lower, most)]
+    return None if todo else True
+
+
+def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:
+    """Durations below which the mean speed between two way-points exceeds a velocity limit."""
+    least = np.zeros(problem.segments)
+    breaks = problem.curve.waypoint_breaks
+    most = problem.limits.widest[:, 0]
+    speed = np.where(most > 0.0, most, np.inf)
+    for w, ways in enumerate(waypoints.steps[0]):
+        if breaks[w + 1] - breaks[w] == 1:
+            least[breaks[w]] = float((ways / speed).max())
+    return least

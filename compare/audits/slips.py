@@ -76,13 +76,7 @@ def _edited(block: Any, path: Path, number: Printed) -> Any:
 
 
 def misprints(spot: Spot, signed: bool = False) -> Iterator[Slip]:
-    """One digit changed, two neighbours exchanged, the point moved or left out, a sign lost.
-
-    Parameters
-    ----------
-    signed : bool
-        Whether the number may have a sign.
-    """
+    """One digit changed, two neighbours exchanged, the point moved or left out, a sign lost."""
     was = spot.number
     for other in was.slips():
         if other.fraction == was.fraction or (other.fraction <= 0 and not signed):
@@ -230,7 +224,7 @@ def of_rows(case: Case, claim: AnyClaim) -> Iterator[Slip]:
 
 def turns(spots: Sequence[Spot], joint: str, unit: str, radians: Sequence[float]) -> Iterator[Slip]:
     """Angles of a joint a full turn further or less far."""
-    # 12: decimals of a full turn in radians: as many as a double-precision angle holds.
+    # A double-precision angle in radians holds twelve decimals of a turn.
     turn = Decimal(str(round(from_si(tau, unit), 12)))
     for w, spot in enumerate(spots):
         for sign in (-1, 1):

@@ -26,8 +26,6 @@ from ..documents import StatedAnswer, StatedClaim, StatedSource, enumerated, kno
 
 RowClaim = DurationsClaim | MaximumClaim
 """What prints durations, so a motion can be built from it."""
-_TIME = "time"
-"""The objective of a claim that was minimised for time alone, in a file that says another one."""
 
 
 def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
@@ -64,19 +62,17 @@ def stated_source(case: Case) -> StatedSource:
 def _answer(claim: AnyClaim) -> StatedAnswer | None:
     if claim.answer is None:
         return None
-    return StatedAnswer(
-        sent=claim.answer.sent,
-        answered=known(claim.answer.answered, "no answer so far"),
-        outcome=claim.answer.outcome,
-    )
+    answered = known(claim.answer.answered, "no answer so far")
+    return StatedAnswer(sent=claim.answer.sent, answered=answered, outcome=claim.answer.outcome)
 
 
 def other_objective(case: Case, claim: AnyClaim | TimeClaim) -> str | None:
     """What was minimised for a printed time; None if it was time alone, or if nothing is said."""
     if not isinstance(claim, TimeClaim):
         return None
+    # A file that says another objective may say of one claim that it is "time".
     said = claim.objective or case.document.objective
-    return None if said is None or said.strip().lower() == _TIME else said.strip().rstrip(".")
+    return None if said is None or said.strip().lower() == "time" else said.strip().rstrip(".")
 
 
 PATH_ALONE = "the curve of the case file is a path, and its own timing is not asked for"
@@ -133,10 +129,9 @@ def in_words_among(case: Case, problem: str, reading: str) -> str:
 
 def asked_as(case: Case, problem: str, reading: str) -> str:
     """A problem and a reading in words, with the ids by which a command asks for them if it can."""
-    words = in_words(case, problem, reading)
-    if len(case.problems) == len(case.readings) == 1:
-        return words
-    return noted(words, f"problem {problem}, reading {reading}")
+    alone = len(case.problems) == len(case.readings) == 1
+    ids = "" if alone else f"problem {problem}, reading {reading}"
+    return noted(in_words(case, problem, reading), ids)
 
 
 def printed_total(claim: Claim) -> Printed | None:
@@ -201,13 +196,6 @@ _MEASURES = {
     "integral-square": "integral of the squared {one}",
 }
 """How a measure of a derivative is called."""
-_PLURALS = {
-    "position": "positions",
-    "velocity": "velocities",
-    "acceleration": "accelerations",
-    "jerk": "jerks",
-}
-"""Derivatives of several joints."""
 DERIVATIVES = ("position", *QUANTITIES)
 """The position and its derivatives, by their order."""
 _STATEMENTS = {
@@ -296,8 +284,8 @@ def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
         called = f"{claim.place} {{one}}" if claim.place in ("largest", "smallest") else "{one}"
     each = claim.values is not None
     plain = called.startswith(("largest", "smallest", "mean", "{one}"))
-    one = _PLURALS[claim.derivative] if each and plain else claim.derivative
-    name = called.format(one=one)
+    plural = "velocities" if claim.derivative == "velocity" else f"{claim.derivative}s"
+    name = called.format(one=plural if each and plain else claim.derivative)
     if each:
         whose = " of the joints"
         name = name.replace("integral", "integrals").replace("mean square", "mean squares")

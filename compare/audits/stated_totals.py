@@ -18,16 +18,12 @@ def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     if own is None or not isinstance(row.claim, RowClaim):
         return []
     low, high = own.interval[0], max(own.interval[1], row.longest_total)
-    stated = (
-        c for c in row.study.case.claims if isinstance(c, TotalTimeClaim) and c.of == row.claim.id
-    )
     found = []
-    for one in stated:
-        if not row.study.fits(one, row.pair):
-            continue
-        printed = row.measured(one.value, "time")
-        if printed.lower > high or printed.cut_off().upper < low:
-            found.append(one)
+    for one in row.study.case.claims:
+        if isinstance(one, TotalTimeClaim) and one.of == row.claim.id:
+            printed = row.measured(one.value, "time")
+            apart = printed.lower > high or printed.cut_off().upper < low
+            found += [one] if apart and row.study.fits(one, row.pair) else []
     return found
 
 
@@ -76,25 +72,6 @@ def total_excludes(row: PrintedRow[AnyClaim], time: float) -> bool:
     return not low <= time <= total.cut_off().upper
 
 
-def is_sum(claim: AnyClaim) -> bool:
-    """Whether the total of a row is not printed beside its durations but their sum."""
-    return isinstance(claim, RowClaim) and printed_total(claim) is None
-
-
-def what_agrees(count: int, sums: int) -> str:
-    """What agrees, up to the reference: printed totals, or sums of durations."""
-    if not sums:
-        return "Every printed total agrees with"
-    if sums < count:
-        return (
-            "Every printed total, or the sum of the printed durations if none is printed, agrees "
-            "with"
-        )
-    if count == 1:
-        return "The sum of the printed durations agrees with"
-    return "The sum of the durations of each row agrees with"
-
-
 def rounded_up_low(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> float:
     """Low end of a printed total whose digits were rounded up, as durations are to keep a limit.
 
@@ -102,6 +79,5 @@ def rounded_up_low(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> 
     beside durations is then the sum of what was rounded up.
     """
     low, high = interval
-    if isinstance(row.claim, TotalTimeClaim) or not isinstance(row.claim, RowClaim):
-        return low - (high - low) / 2
-    return min(low, _raised_low(row))
+    own = low - (high - low) / 2
+    return min(low, _raised_low(row)) if isinstance(row.claim, RowClaim) else own

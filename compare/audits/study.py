@@ -35,12 +35,18 @@ from ...problem import (
     as_piecewise,
     fit,
 )
-from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
+from ...problem.cases import (
+    AlgorithmBlock,
+    AnyClaim,
+    Claim,
+    DurationsClaim,
+    MotionValueClaim,
+    TimeClaim,
+)
 from ..documents import capital, noted
-from .intervals import Intervals
+from .intervals import USUAL, AuditOptions, Intervals
 from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
-from .options import USUAL, AuditOptions
 from .replay_settings import LISTED, spread_settings
 from .stated import (
     PATH_ALONE,
@@ -78,8 +84,6 @@ class Study:
 
     Parameters
     ----------
-    case : Case
-    options : AuditOptions
     **given
         Fields of the options to change.
     """
@@ -194,7 +198,7 @@ class Study:
 
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""
-        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        block = self._block(algorithm_id)
         if block.kind is None or block.kind not in KINDS:
             return None
         try:
@@ -202,6 +206,9 @@ class Study:
         except TrajgapError as error:
             why = str(error).removeprefix(f"{block.kind}: ")
             raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
+
+    def _block(self, algorithm_id: str) -> AlgorithmBlock:
+        return next(a for a in self.case.algorithms if a.id == algorithm_id)
 
     @property
     def not_replayed(self) -> tuple[str, ...]:
@@ -221,17 +228,16 @@ class Study:
 
     def called(self, algorithm_id: str) -> str:
         """The name of an algorithm, for use in a sentence."""
-        return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
+        return f"the {self._block(algorithm_id).name}"
 
     def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
         algorithm, name = self.algorithm(algorithm_id), capital(self.called(algorithm_id))
         if algorithm is None:
             return f"{name} is an algorithm that is not implemented here."
-        problem = self.problem(pair)
         try:
             # What judges the positions of every run says whether it can.
-            DeathPenalty(problem, algorithm.penalty)
+            DeathPenalty(self.problem(pair), algorithm.penalty)
         except TrajgapError as error:
             return f"{name} is not replayed: {error}."
         return None
@@ -272,8 +278,7 @@ class Study:
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:
             return {}
-        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
-        return spread_settings(algorithm, block.settings)
+        return spread_settings(algorithm, self._block(algorithm_id).settings)
 
     def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
         """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
@@ -27,6 +29,7 @@ from ..documents import (
     enumerated,
     known,
 )
+from .amounts import seconds
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
 from .own_result import bare_totals, own_result
@@ -70,20 +73,13 @@ def _known(name: str, solution: Solution, note: str = "") -> Step:
     notes = [n for n in (note, solution.why, *routes(solution)) if n]
     if solution.infimum is not None:
         notes.append("approached, not attained")
-    low = solution.lower_bound
-    if low is None:
-        return Step(
-            name=name, time=solution.best, evidence=solution.evidence, note="; ".join(notes)
-        )
-    notes.append(f"proved, gap {(solution.best - low) / solution.best:.1e}")
-    return Step(
-        name=name,
-        time=solution.best,
-        low=low,
-        high=solution.best,
-        evidence=solution.evidence,
-        note="; ".join(notes),
-    )
+    low, best = solution.lower_bound, solution.best
+    ends: dict[str, Any] = {}
+    if low is not None:
+        notes.append(f"proved, gap {(best - low) / best:.1e}")
+        ends = {"low": low, "high": best}
+    evidence = solution.evidence
+    return Step(name=name, time=best, evidence=evidence, note="; ".join(notes), **ends)
 
 
 _FOUND = {Route.NLP: "the NLP (IPOPT)", Route.DESCENT: "descents", Route.CLOSED_FORM: "a formula"}
@@ -119,13 +115,8 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
     if problem.ratios is not None:
         steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pair))))
     relaxed = _converged(study.relaxed(pair))
-    steps.append(
-        _known(
-            "relaxed family",
-            relaxed,
-            "degree 5 or more in every segment, C2, remaining freedom optimised",
-        )
-    )
+    note = "degree 5 or more in every segment, C2, remaining freedom optimised"
+    steps.append(_known("relaxed family", relaxed, note))
     steps.append(_retimed(RELAXED_RETIMED, relaxed))
     steps.append(_free(study, pair))
     longest = None if claim is None else optimum_range(PrintedRow(study, claim, pair)).upper
@@ -248,8 +239,8 @@ def _procedure(study: Study, pair: Pair) -> Step:
     if answer.ranges:
         low, high = answer.ranges[0].lowest, answer.ranges[0].highest
         note += (
-            f"; the range holds while each joint stays within {answer.ranges[0].slack:g} s of its "
-            "optimum"
+            f"; the range holds while each joint stays within "
+            f"{seconds(answer.ranges[0].slack, 'g')} of its optimum"
         )
     return Step(
         name=name, time=answer.total_time, low=low, high=high, evidence=answer.evidence, note=note
@@ -295,7 +286,8 @@ def _free(study: Study, pair: Pair) -> Step:
     answer = estimate_any_curve(study.problem(pair))
     if answer.total_time is None:
         return Step.missing(name, answer.why or "")
-    note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
+    also = f"; {answer.why}" if answer.why else ""
+    note = f"upper estimate{also}"
     exact = printed_problem_or_none(study.case.statement(*pair))
     bound = None if exact is None else study.intervals.any_curve(exact)
     # An infimum that is met to the last digit may round to either side of its bound.
@@ -304,12 +296,8 @@ def _free(study: Study, pair: Pair) -> Step:
     low = down(bound.lower)
     least = shown_bound(bound.lower, "lower")
     shown = f"no motion within the limits is shorter than {least} s: certified"
+    known, high, note = Evidence.BEST_KNOWN, max(low, answer.total_time), f"{note}; {shown}"
     if bound.upper is not None:
-        high = up(bound.upper)
-        note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
-        known = Evidence.CERTIFIED
-        return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)
-    note += f"; {shown}"
-    high = max(low, answer.total_time)
-    known = Evidence.BEST_KNOWN
+        known, high = Evidence.CERTIFIED, up(bound.upper)
+        note = f"{shown}, gap {(high - low) / high:.1e}{also}"
     return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)

@@ -1,10 +1,12 @@
 """Made-up cases put to single rules, without what an audit computes beside them, and audited."""
 
+from collections.abc import Iterable
+
 from trajgap.compare.audits import Pair
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit, audit_case
 from trajgap.compare.audits.rules import GROUPS
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import Basis, ClaimVerdict, Finding
+from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Waterfall
 from trajgap.nlp import Solution, Status
 from trajgap.problem import Case, parse_case
 
@@ -63,3 +65,9 @@ def made_finding(verdict: ClaimVerdict, reading: str | None = None, **change: ob
 def verdicts(one: CaseAudit) -> dict[str, ClaimVerdict]:
     """The verdict on each claim."""
     return {judgement.claim: judgement.verdict for judgement in one.judgements}
+
+
+def with_waterfalls(one: CaseAudit, made: Iterable[Waterfall]) -> CaseAudit:
+    """An audit whose waterfalls are made by hand."""
+    vars(one)["waterfalls"] = tuple(made)
+    return one

@@ -14,7 +14,7 @@ import pytest
 from support.drawn import sketched
 from support.findings import OwnCurve
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
-from trajgap.compare.audits.reworded import Reworded
+from trajgap.compare.audits.revision import Reworded
 from trajgap.compare.audits.study import Study
 from trajgap.compare.blocks import Page
 from trajgap.compare.pages.writer import case_page

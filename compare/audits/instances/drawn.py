@@ -7,6 +7,7 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from typing import Any, cast
 
 import numpy as np
@@ -99,49 +100,37 @@ def _each(todo: Sequence[Task], workers: int) -> Generator[tuple[Sample, ...], N
         yield from map(_of_task, others)
 
 
-Kept = dict[tuple[object, ...], Any]
-"""What was computed already, by what tells one question from another."""
+Key = tuple[object, ...]
+"""What tells one question from another."""
 
 
 def _of_task(task: Task) -> tuple[Sample, ...]:
-    kept: Kept = {}
     by_slower, by_faster = task.algorithms
+    # The slower procedure, its algorithm on the faster one's curve, and the faster procedure.
     routes = []
     for slow, fast in zip(task.slower, task.faster, strict=True):
         one, other = _fast_form(slow), _fast_form(fast)
         routes.append(((one, by_slower), (other, by_slower), (other, by_faster)))
-    asked = [
-        (problem, algorithm, objective)
-        for each in routes
-        for problem, algorithm in each
-        for objective in task.objectives
-    ]
-    _run_all(kept, asked, task.runs, task.replays)
-    _solve_all(kept, [problem for each in routes for problem, _ in each], task.optima)
+    ran = _runs(task, [route for each in routes for route in each])
+    solved = _optima(task, [problem for each in routes for problem, _ in each])
     found = []
     for reading, each in zip(task.readings, routes, strict=True):
-        # 3: the slower procedure, its algorithm on the faster one's curve, and the faster
-        # procedure.
-        totals = np.empty((len(task.objectives), 3, task.runs))
-        settled = np.empty(totals.shape, dtype=np.intp)
-        for at, objective in enumerate(task.objectives):
-            for r, (problem, algorithm) in enumerate(each):
-                for seed in range(task.runs):
-                    ran = kept[(*_key(problem), algorithm, seed, objective)]
-                    totals[at, r, seed], settled[at, r, seed] = ran
-        totals.setflags(write=False)
-        settled.setflags(write=False)
-        (one, _), (other, _), _ = each
+        shape = len(task.objectives), len(each), task.runs
+        ended = np.empty((*shape, 2))
+        for at, r, seed in np.ndindex(shape):
+            problem, algorithm = each[r]
+            ended[at, r, seed] = ran[(*_key(problem), algorithm, seed, task.objectives[at])]
+        ended.setflags(write=False)
         found.append(
             Sample(
                 reading=reading,
                 step=task.step,
                 index=task.index,
                 waypoints=task.waypoints,
-                slower=kept[_key(one)],
-                faster=kept[_key(other)],
-                totals=totals,
-                settled=settled,
+                slower=solved[_key(each[0][0])],
+                faster=solved[_key(each[1][0])],
+                totals=ended[..., 0],
+                settled=ended[..., 1].astype(np.intp),
             )
         )
     return tuple(found)
@@ -153,7 +142,7 @@ def _fast_form(problem: Problem) -> Problem:
     return replace(problem, curve=curve, coupling=Coupling.SHARED)
 
 
-def _key(problem: Problem) -> tuple[object, ...]:
+def _key(problem: Problem) -> Key:
     """What tells one problem through the same way-points from another."""
     limits = problem.limits
     arrays = (
@@ -167,26 +156,25 @@ def _key(problem: Problem) -> tuple[object, ...]:
     return (problem.curve, *(array.tobytes() for array in arrays))
 
 
-def _run_all(
-    kept: Kept,
-    asked: Iterable[tuple[Problem, Algorithm[Any], str]],
-    runs: int,
-    replays: KeptReplays,
-) -> None:
-    """Keep what every run gives, each once: all runs of an algorithm are moved side by side."""
-    todo: dict[Algorithm[Any], dict[tuple[object, ...], AskedRun]] = {}
-    for problem, algorithm, objective in asked:
-        for seed in range(runs):
+def _runs(
+    task: Task, routes: Iterable[tuple[Problem, Algorithm[Any]]]
+) -> dict[Key, tuple[float, int]]:
+    """What every run gives, each once: all runs of an algorithm are moved side by side."""
+    todo: dict[Algorithm[Any], dict[Key, AskedRun]] = {}
+    for problem, algorithm in routes:
+        for objective, seed in product(task.objectives, range(task.runs)):
             key = (*_key(problem), algorithm, seed, objective)
             # The first of equal problems stands for all, so neighbours are judged together.
             one = AskedRun(problem, seed, (), objective)
             todo.setdefault(algorithm, {}).setdefault(key, one)
+    found = {}
     for algorithm, questions in todo.items():
         together = list(questions.values())
         named = [AskedReplay(algorithm, one) for one in together]
-        ran = replays.runs(named, partial(run_asked, algorithm, together))
+        ran = task.replays.runs(named, partial(run_asked, algorithm, together))
         for (key, question), done in zip(questions.items(), ran, strict=True):
-            kept[key] = _judged(question.problem, done)
+            found[key] = _judged(question.problem, done)
+    return found
 
 
 def _judged(problem: Problem, done: Run) -> tuple[float, int]:
@@ -197,15 +185,15 @@ def _judged(problem: Problem, done: Run) -> tuple[float, int]:
     return total, settled_at(done.trace, SETTLED * total)
 
 
-def _solve_all(kept: Kept, problems: Iterable[Problem], optima: KeptOptima) -> None:
-    """Keep the optimum of every problem, each once."""
-    asked: dict[tuple[object, ...], AskedOptimum] = {}
+def _optima(task: Task, problems: Iterable[Problem]) -> dict[Key, Optimum]:
+    """The optimum of every problem, each once."""
+    asked: dict[Key, AskedOptimum] = {}
     for problem in problems:
         polynomials = as_piecewise(problem.curve)
         alone = polynomials is not None and set(polynomials.continuity) <= {0}
         asked.setdefault(_key(problem), AskedOptimum(problem, 1 if alone else STARTS))
-    solved = optima.solved(list(asked.values()))
-    kept.update(zip(asked, map(_ended, solved), strict=True))
+    solved = task.optima.solved(list(asked.values()))
+    return dict(zip(asked, map(_ended, solved), strict=True))
 
 
 def _ended(solution: Solution) -> Optimum:
@@ -255,11 +243,6 @@ def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 
-def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str | None, str | None]:
-    slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
-    return slow and slow[0], fast and fast[0]
-
-
 def examinable(study: Study) -> tuple[InstancesBlock, ...]:
     """Designs of instances of which both problems and some reading are selected.
 
@@ -282,11 +265,6 @@ def unexamined(study: Study, block: InstancesBlock) -> str | None:
 
 def examined(study: Study, block: InstancesBlock) -> InstancesResult:
     """What the two procedures of an improvement do on instances that are drawn for it, once.
-
-    Parameters
-    ----------
-    block : InstancesBlock
-        For which `readings_of` names some reading.
 
     Raises
     ------
@@ -331,6 +309,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)
     ]
+    slow, fast = (study.claim_total(side, readings[0]) for side in _sides(study, block))
     return InstancesResult(
         block=block,
         slower=slower,
@@ -343,6 +322,6 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
             study.options.workers or os.cpu_count() or 1,
             lambda done: study.progress(f"{what}, {done}"),
         ),
-        printed_totals=_printed_totals(study, block, readings[0]),
+        printed_totals=(slow and slow.shown, fast and fast.shown),
         labels=study.case.labels,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,12 +46,8 @@ class Sample:
     ----------
     step : float
         rad or m.
-    index : int
-        Among the instances of its step.
     waypoints : ndarray, shape (way-points, joints)
         rad.
-    slower, faster : Optimum
-        Of the two curves.
     totals : ndarray, shape (objectives, 3, runs)
         Reported totals, s, of the slower procedure, the slower one's algorithm on the faster
         one's curve, and the faster procedure; inf if a run has no answer that keeps its limits.
@@ -74,10 +71,6 @@ class Sample:
         ----------
         objective : int
             Position among the design's objectives; the optima have none.
-
-        Returns
-        -------
-        ndarray, shape (pairs,)
         """
         if effect is Effect.CURVE:
             before, after = np.array([self.slower.total]), np.array([self.faster.total])
@@ -115,14 +108,9 @@ class Distribution:
 
 
 def distribution(reductions: Array) -> Distribution:
-    """Quantiles of reductions.
+    """Quantiles of reductions, which are nan where a pair has none; nothing is clipped.
 
     All are nan if no pair has one.
-
-    Parameters
-    ----------
-    reductions : ndarray, shape (pairs,)
-        nan where a pair has none; nothing is clipped.
     """
     known = reductions[np.isfinite(reductions)]
     if not known.size:
@@ -195,8 +183,7 @@ class InstancesResult:
             return float(known[0]), float(known[0])
         from scipy.stats import bootstrap  # half a second, and few need it
 
-        # 1000: samples of instances behind an interval: its ends move by about a tenth of its
-        # width.
+        # With so many resamples the ends move by about a tenth of the width.
         found = bootstrap(
             (known,), np.median, n_resamples=1000, method="percentile", rng=0
         ).confidence_interval
@@ -297,19 +284,15 @@ def _reductions(result: InstancesResult) -> Iterator[Reduction]:
                         else "fewer than two instances have answers"
                     )
                     none = Why("no pair of runs has two answers")
+                    numbers: dict[str, Any] = {
+                        k: none if empty else v for k, v in vars(found).items()
+                    }
                     yield Reduction(
                         reading=reading,
                         effect=effect,
                         objective=None if alone else objective,
                         step=step,
-                        pairs=found.pairs,
-                        missing=found.missing,
-                        lowest=none if empty else found.lowest,
-                        lower_quarter=none if empty else found.lower_quarter,
-                        median=none if empty else found.median,
-                        upper_quarter=none if empty else found.upper_quarter,
-                        highest=none if empty else found.highest,
-                        shorter=none if empty else found.shorter,
+                        **numbers | {"pairs": found.pairs, "missing": found.missing},
                         median_from=low if np.isfinite(low) else apart,
                         median_to=high if np.isfinite(high) else apart,
                     )

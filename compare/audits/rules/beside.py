@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -15,6 +16,8 @@ from ..rounding import Agreement, RoundingBox, agreement, hull, meet
 
 Meant = Callable[[Array, Array], dict[str, float]]
 """From way-points and durations to what a number may be, each in words."""
+Boxes = tuple[RoundingBox, RoundingBox]
+"""Durations, shape (segments,), and way-points, shape (way-points, joints)."""
 SAMPLES = (50, 100, 200, 500, 1000)
 """Numbers of samples of which a paper may have taken a mean, with or without the last instant."""
 UNEXPLAINED = (
@@ -143,8 +146,7 @@ class Beside:
             return None
         around = self.exact - self.reach, self.exact + self.reach
         low, high = self.rounded
-        # (2, 3, 5): numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree
-        # 5 and 84√5/25 of degree 7: one that is lost in print is named as an explanation.
+        # Closed forms of peaks hold them, such as 10/√3 of degree 5 and 84√5/25 of degree 7.
         found = (n for n in (2, 3, 5) if meet((n**0.5 * low, n**0.5 * high), around))
         return next(found, None)
 
@@ -158,21 +160,12 @@ class Beside:
 
 
 def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
-    """The factor between two units that a ratio is near, and what it would mean.
+    """The factor between two units that a positive ratio is near, and what it would mean, if any.
 
-    It is None if the ratio is near none.
-
-    Parameters
-    ----------
-    ratio : float
-        Positive.
-    linear : bool
-        Whether the numbers are those of a joint that slides.
+    Joints that slide have units of their own.
     """
     for factor, meaning in (_LENGTH_FACTORS if linear else _FACTORS).items():
         for one in (factor, 1 / factor):
-            # 0.01: relative distance from such a ratio below which the unit is named as an
-            # explanation.
             if abs(ratio / one - 1) <= 0.01:
                 return f"{one:.6g}, {meaning}"
     return None
@@ -184,7 +177,7 @@ def nearest_number(
     joint: str | None,
     meant: Meant,
     samples: Sequence[Mapping[str, float]],
-    boxes: tuple[RoundingBox, RoundingBox],
+    boxes: Boxes,
     spread: float = 0.0,
 ) -> Beside:
     """A printed number beside the one that it is nearest to, of those that it may be.
@@ -193,23 +186,19 @@ def nearest_number(
     ----------
     unit : str
         Of the paper, as a sentence writes it.
-    joint : str or None
-        Whose number it is.
     meant : callable
         In the unit of the paper.
     samples : sequence of dict
         What samples of the printed motion give instead, in the same words; may be empty.
-    boxes : tuple of RoundingBox
-        Of durations, shape (segments,), and of way-points, shape (way-points, joints).
     spread : float
         Further change that rounding allows, in the unit of the paper.
     """
-    durations, waypoints = boxes
-    at_print = meant(waypoints.value, durations.value)
+    middle, _, upper = flat(boxes)
+    at_print = meant(*split(middle, boxes))
     reach = dict.fromkeys(at_print, 0.0)
-    for moved in _each_moved(durations, waypoints, "upper"):
-        for words, value in meant(*moved).items():
-            reach[words] += abs(value - at_print[words])
+    for moved in _each_moved(middle, upper):
+        for words, number in meant(*split(moved, boxes)).items():
+            reach[words] += abs(number - at_print[words])
     rounded, wide = (
         (float(one.lower), float(one.upper)) for one in (printed.interval, hull(printed))
     )
@@ -222,49 +211,54 @@ def nearest_number(
     fitting = [one for one in tried if one.fits]
     if not fitting:
         for i, one in enumerate(tried):
-            near, far = (
-                _farthest(meant, one.meaning, durations, waypoints, share) for share in (1.0, 2.0)
-            )
+            near, far = (_farthest(meant, one.meaning, boxes, share) for share in (1.0, 2.0))
             near, far = near + spread, far + 2 * spread
             tried[i] = replace(one, reach=max(one.reach, near), far=max(one.far, far))
         fitting = [one for one in tried if one.fits]
     return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))
 
 
-def _farthest(
-    meant: Meant, words: str, durations: RoundingBox, waypoints: RoundingBox, share: float
-) -> float:
+def flat(boxes: Boxes) -> tuple[Array, Array, Array]:
+    """Numbers of two boxes in one array, as printed and at both ends: the durations first."""
+    durations, waypoints = boxes
+    middle, low, high = (
+        np.append(getattr(durations, end), getattr(waypoints, end))
+        for end in ("value", "lower", "upper")
+    )
+    return middle, low, high
+
+
+def split(numbers: Array, boxes: Boxes) -> tuple[Array, Array]:
+    """Way-points and durations that lie in one array, see `flat`."""
+    durations, waypoints = np.split(numbers, [boxes[0].value.size])
+    return waypoints.reshape(boxes[1].value.shape), durations
+
+
+def _each_moved(numbers: Array, others: Array) -> Iterator[Array]:
+    """The numbers with one of them in the place of its own, each in turn."""
+    for k in range(numbers.size):
+        moved = numbers.copy()
+        moved[k] = others[k]
+        yield moved
+
+
+def _farthest(meant: Meant, words: str, boxes: Boxes, share: float) -> float:
     """Largest change of a number that is found in the rounding box, ``share`` as wide."""
 
-    def look(h: RoundingBox, q: RoundingBox) -> Look:
-        here = meant(q.value, h.value)[words]
+    def number(at: Array) -> float:
+        return meant(*split(at, boxes))[words]
 
-        def changes(end: str) -> Array:
-            found = []
-            for moved in _each_moved(h, q, end):
-                try:
-                    found.append(meant(*moved)[words] - here)
-                except TrajgapError:  # a duration that is not positive, or no curve
-                    found.append(np.nan)
-            return np.array(found)
+    def look(at: Array, *ends: Array) -> Look:
+        here = number(at)
+        changes = []
+        for end in ends:
+            changes.append(np.full(at.size, np.nan))
+            for k, moved in enumerate(_each_moved(at, end)):
+                with suppress(TrajgapError):  # a duration that is not positive, or no curve
+                    changes[-1][k] = number(moved) - here
+        return Look(here, *changes)
 
-        return Look(here, changes("lower"), changes("upper"))
-
-    return largest_change(durations, waypoints, share, look)
-
-
-def _each_moved(h: RoundingBox, q: RoundingBox, end: str) -> Iterator[tuple[Array, Array]]:
-    """Way-points and durations with one number at an end: the durations first, row by row."""
-    for k in np.ndindex(h.value.shape):
-        yield q.value, _with(h.value, k, getattr(h, end))
-    for k in np.ndindex(q.value.shape):
-        yield _with(q.value, k, getattr(q, end)), h.value
-
-
-def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
-    found = values.copy()
-    found[k] = others[k]
-    return found
+    return largest_change(boxes, share, look)
 
 
 class Look(NamedTuple):
@@ -274,8 +268,7 @@ class Look(NamedTuple):
     ----------
     down, up : ndarray
         What it would change by if one printed number went to the lower or the upper end of its
-        range while the others stay, the durations first, then the way-points row by row; not a
-        number where that end has no curve.
+        range while the others stay; not a number where that end has no curve.
     """
 
     value: float
@@ -284,12 +277,9 @@ class Look(NamedTuple):
 
 
 def largest_change(
-    durations: RoundingBox,
-    waypoints: RoundingBox,
-    share: float,
-    look: Callable[[RoundingBox, RoundingBox], Look],
+    boxes: Boxes, share: float, look: Callable[[Array, Array, Array], Look]
 ) -> float:
-    """Largest change of a number that is found at corners of the rounding box.
+    """Largest change of a number that is found at corners of the rounding box, in its own unit.
 
     The first order at the printed numbers tells little where a segment lasts few units of its last
     digit. So every printed number goes to the end at which the number is better while the others
@@ -297,38 +287,18 @@ def largest_change(
 
     Parameters
     ----------
-    durations : RoundingBox, shape (segments,)
-    waypoints : RoundingBox, shape (way-points, joints)
     share : float
         How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
     look : callable
-        Of durations and way-points; the value of each box is the place, its ends are those of the
-        wider box. May raise `TrajgapError` where there is no curve.
-
-    Returns
-    -------
-    float
-        In the unit of the number.
+        Of a place and of the lower and the upper ends of the wider box, each as `flat` has them.
+        May raise `TrajgapError` where there is no curve.
     """
-    middle, low, high = (
-        np.append(getattr(durations, end), getattr(waypoints, end))
-        for end in ("value", "lower", "upper")
-    )
+    middle, low, high = flat(boxes)
     low, high = middle + share * (low - middle), middle + share * (high - middle)
-    segments, shape = durations.value.size, waypoints.value.shape
-
-    def looked(at: Array) -> Look:
-        h, q = (
-            RoundingBox(*parts)
-            for parts in zip(*(np.split(x, [segments]) for x in (at, low, high)), strict=True)
-        )
-        return look(h, RoundingBox(*(x.reshape(shape) for x in (q.value, q.lower, q.upper))))
-
-    widest, start = 0.0, looked(middle)
+    widest, start = 0.0, look(middle, low, high)
     for side in (1.0, -1.0):
         at, here = middle, start
-        # 6: corners of the rounding box that are looked at in turn at most, each way; a search of
-        # all of its 2ⁿ corners would not end where there are many durations and way-points.
+        # Six corners in turn, each way: a search of all 2ⁿ would not end.
         for _ in range(6):
             down, up = (
                 np.where(np.isnan(change), -np.inf, side * change)
@@ -338,7 +308,7 @@ def largest_change(
             if np.array_equal(ahead, at):
                 break
             try:
-                at, here = ahead, looked(ahead)
+                at, here = ahead, look(ahead, low, high)
             except TrajgapError:  # a duration that is not positive, or no curve
                 break
             widest = max(widest, side * (here.value - start.value))

@@ -12,7 +12,6 @@ from ....problem import (
     QUANTITIES,
     Array,
     LimitPair,
-    Measured,
     Problem,
     Trajectory,
     control_vertices,
@@ -36,7 +35,7 @@ from ..printed_row import PrintedRow, rows_under
 from ..rounding import FEW_ROUNDINGS
 from ..stated import DERIVATIVES
 from ..study import Study
-from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
+from .peaks import jumps_shown, largest
 
 _FILLED = 0.1
 """Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:
@@ -61,24 +60,18 @@ def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
 
 
 def _under(study: Study, clue: AnyClue, reading: str) -> Iterator[ReadingClue]:
-    if isinstance(clue, AxisClue):
-        said = _on_axis(study, clue, reading)
-    elif isinstance(clue, DataSheetClue):
-        said = _data_sheet(study, clue, reading)
-    elif isinstance(clue, SmoothClue):
-        said = _smooth(study, clue, reading)
-    else:
-        said = _half_turns(study, clue, reading)
+    match clue:
+        case AxisClue():
+            said = _on_axis(study, clue, reading)
+        case DataSheetClue():
+            said = _data_sheet(study, clue, reading)
+        case SmoothClue():
+            said = _smooth(study, clue, reading)
+        case _:
+            said = _half_turns(study, clue, reading)
     if said is not None:
-        speaks, computed = said
-        yield ReadingClue(
-            clue=clue.id,
-            where=clue.where,
-            text=clue.text,
-            reading=reading,
-            speaks=speaks,
-            computed=computed,
-        )
+        about = {"clue": clue.id, "where": clue.where, "text": clue.text, "reading": reading}
+        yield ReadingClue(speaks=said[0], computed=said[1], **about)
 
 
 _Said = tuple[Speaks, str] | None
@@ -133,7 +126,11 @@ def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
     ]
     if not pairs:
         return None
-    if all(_alike(ours, sheet) for ours, sheet in pairs):
+    if all(
+        ours.lower <= sheet.upper + _DATA_SHEET * sheet.value
+        and sheet.lower <= ours.upper + _DATA_SHEET * sheet.value
+        for ours, sheet in pairs
+    ):
         return Speaks.FOR, f"{clue.quantity} limits equal those of the data sheet"
     ratios = [ours.value / sheet.value for ours, sheet in pairs]
     low, high = (f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
@@ -142,11 +139,6 @@ def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
     within = below and min(ratios) >= _FILLED
     speaks = Speaks.FOR if within else Speaks.AGAINST
     return speaks, f"{clue.quantity} limits {times} times those of the data sheet"
-
-
-def _alike(one: Measured, other: Measured) -> bool:
-    slack = _DATA_SHEET * other.value
-    return one.lower <= other.upper + slack and other.lower <= one.upper + slack
 
 
 def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:
@@ -158,11 +150,7 @@ def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:
     jumps = [(row, jump) for row in motions for jump in row.check.jumps if jump.order == order]
     if not jumps:
         return Speaks.FOR, f"{clue.quantity} does not jump"
-    shown = " and ".join(
-        f"{abs(jump_size(row, jump)):.3g} {jump_unit(row, jump)}"
-        for row, jump in largest_of_each_kind(jumps)
-    )
-    plural = "s" if len(jumps) > 1 else ""
+    shown, plural = " and ".join(jumps_shown(jumps, ".3g")), "s" if len(jumps) > 1 else ""
     return (Speaks.AGAINST, f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown}")
 
 

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ....problem import Case
 from ...documents import Basis, Finding, noted
+from ..amounts import percent
 from ..study import Study
 from .rule_group import INFORMS, Explained, finding, rule_group
 
@@ -131,8 +132,6 @@ def all_comparisons() -> tuple[Comparison, ...]:
 
 _TOGETHER = "all joints together"
 """Where a study names no other way of searching: a card calls such an optimum so."""
-_STRONG = 0.75
-"""Probability from which the text says that taking something away changes a run: 3 of 4 pairs."""
 
 
 @rule_group(
@@ -170,7 +169,7 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
 
 def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
     """What a comparison came to, in sentences; its problems are called as the case calls them."""
-    what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
+    what = f"at least {percent(known.advantage, '.4g')} shorter" if known.advantage else "shorter"
     runs = known.listed[0].shown.runs
     yield (
         f"A committed study ran both on {known.on}, with {known.budget:,} evaluations per run and "
@@ -187,12 +186,14 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
             for one in known.designed
         ]
         best = max(known.designed, key=lambda one: one.most or 0.0)
+        most = ""
+        if best.most:
+            settings = f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
+            most = f", most often with {settings} ({_percent(best.most)})"
         yield (
             f"If everything that the text leaves open is varied together, this is typical (true "
-            f"of at least half of the pairs of runs) for {' and for '.join(counts)}"
-            + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
-               else ".")
-        )  # fmt: skip
+            f"of at least half of the pairs of runs) for {' and for '.join(counts)}{most}."
+        )
     yield from _taken_away(known.ablated, case)
 
 
@@ -236,18 +237,18 @@ def _sure(one: Listed) -> str:
     return f"95 % interval {_percent(one.shown.lowest)} to {_percent(one.shown.highest)}"
 
 
-def _settings(known: Comparison, best: Designed) -> str:
-    return f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
-
-
 def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
-    """What single parts of the improvement change, for each problem in a sentence."""
+    """What single parts of the improvement change, for each problem in a sentence.
+
+    That it helps or harms is said where 3 of 4 pairs show it.
+    """
     alone = [one for one in ablated if len(one.without) == 1 and one.shown.shorter is not None]
     for problem, searched in _called(case, [one.problem for one in alone]).items():
         parts = [
             f"{' and '.join(one.without)} {_percent(one.shown.shorter)}"
-            + (" (it helps)" if _above(one) else " (it harms)" if _below(one) else "")
+            + (" (it helps)" if shorter >= 0.75 else " (it harms)" if shorter <= 0.25 else "")
             for one in alone
+            for shorter in (one.shown.shorter or 0.0,)
             if one.problem == problem
         ]
         yield (
@@ -256,13 +257,5 @@ def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
         )
 
 
-def _above(one: Ablated) -> bool:
-    return (one.shown.shorter or 0.0) >= _STRONG
-
-
-def _below(one: Ablated) -> bool:
-    return one.shown.shorter is not None and one.shown.shorter <= 1 - _STRONG
-
-
 def _percent(share: float | None) -> str:
-    return "an unknown share" if share is None else f"{100 * share:.3g} %"
+    return "an unknown share" if share is None else percent(share)

@@ -106,6 +106,7 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
         basis=Basis.COUNT,
         printed=printed,
         computed=computed,
+        # A printed count may be wrong; that the declared curve meets its own conditions cannot.
         built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
 
@@ -136,20 +137,12 @@ def _impossible_segments(study: Study, claim: ConditionsClaim) -> list[int]:
 
 
 def meets(degree: int, start: Sequence[int], end: Sequence[int]) -> bool:
-    """Whether some polynomial moves from 0 to 1 while given derivatives vanish at its ends.
-
-    Parameters
-    ----------
-    start, end : sequence of int
-        Orders of the derivatives that vanish at 0 and at 1.
-    """
-    rows = [[_slope(power, 0, 0) for power in range(degree + 1)] + [Fraction(0)]]
-    rows.append([_slope(power, 0, 1) for power in range(degree + 1)] + [Fraction(1)])
-    for at, orders in ((0, start), (1, end)):
-        rows += [
-            [_slope(power, order, at) for power in range(degree + 1)] + [Fraction(0)]
-            for order in orders
-        ]
+    """Whether some polynomial moves from 0 to 1 while derivatives of these orders vanish there."""
+    asked = [(0, 0, 0), (0, 1, 1), *((order, 0, 0) for order in start), *((o, 1, 0) for o in end)]
+    rows = [
+        [*(_slope(power, order, at) for power in range(degree + 1)), Fraction(value)]
+        for order, at, value in asked
+    ]
     for column in range(degree + 1):
         pivot = next((row for row in rows if row[column] != 0), None)
         if pivot is None:
@@ -174,7 +167,8 @@ def _at_rest(
     study: Study, claim: AnyClaim, of: Sequence[str], orders: Sequence[int]
 ) -> Iterator[Finding]:
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
-    for reading, rows, others in named_rows(study, of or _rows(study)):
+    every = [c.id for c in study.case.claims if isinstance(c, RowClaim)]
+    for reading, rows, others in named_rows(study, of or every):
         moving, judged, built = [], 0, True
         for row in rows:
             if claim.problem not in (None, row.problem) or not row.has_curve:
@@ -213,10 +207,6 @@ def _at_rest(
         )
 
 
-def _rows(study: Study) -> list[str]:
-    return [c.id for c in study.case.claims if isinstance(c, RowClaim)]
-
-
 def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:
     """Whether a curve has derivatives 0 at both ends as it is declared."""
     ends = (curve.prescribed_at(0), curve.prescribed_at(curve.segments))
@@ -233,8 +223,7 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
         quantity = QUANTITIES[order - 1]
         tops = [abs(top.value) for top in largest(row, order)]
         ends = np.abs(trajectory(np.array([0.0, trajectory.total_time]), order))
-        # 0.01: share of a derivative's peak up to which its value at an end counts as 0: rounding
-        # of the printed digits moves it by less.
+        # A hundredth of the peak counts as 0: rounding of the printed digits moves it by less.
         over = np.where(ends > 0.01 * np.array(tops), ends, 0.0)
         if not over.any():
             continue
@@ -245,9 +234,6 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
                 continue
             end, joint = np.unravel_index(int(np.argmax(own)), own.shape)
             label = problem.joints[int(joint)]
-            value = row.in_units(quantity, float(own[end, joint]), label)
+            value = row.shown(quantity, float(own[end, joint]), label, ".4g")
             where = "starts" if end == 0 else "ends"
-            yield (
-                f"joint {label} {where} with a {quantity} of {value:.4g} "
-                f"{row.unit(quantity, label)}"
-            )
+            yield f"joint {label} {where} with a {quantity} of {value}"

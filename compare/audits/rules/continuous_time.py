@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from ....problem import QUANTITIES, Verdict
 from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
+from ..amounts import seconds
 from ..digit_ranges import below_certified
 from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
 from ..printed_row import PrintedRow, named_rows, printed_rows
@@ -17,7 +18,7 @@ from ..stated import DERIVATIVES, RowClaim, all_called, called_under
 from ..study import Study
 from .judged_rows import broken, judged_row, ratio_at_print
 from .linear_blends import judge_row
-from .peaks import box_reach, jump_size, jump_unit, largest, largest_of_each_kind
+from .peaks import box_reach, jump_shown, jumps_shown, largest, largest_of_each_kind
 from .rule_group import INFORMS, Explained, finding, rule_group
 
 _ELSEWHERE = "elsewhere"
@@ -61,17 +62,15 @@ _ELSEWHERE = "elsewhere"
 )
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
+    judges: dict[str, Callable[[Study, StatementClaim], Iterator[Finding]]]
+    judges = {"within_limits": _limits_statement, "continuous": _continuity, "jumps": _said_to_jump}
     for claim in study.claims:
         if isinstance(claim, RowClaim):
             yield from _limits(study, claim)
             yield from _jumps(study, claim)
             yield from _used_up(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "within_limits":
-            yield from _limits_statement(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "continuous":
-            yield from _continuity(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "jumps":
-            yield from _said_to_jump(study, claim)
+        elif isinstance(claim, StatementClaim) and claim.checks in judges:
+            yield from judges[claim.checks](study, claim)
 
 
 @rule_group()  # it finds what TG201 finds
@@ -117,14 +116,12 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """Name a motion that jumps under a reading; no word of the paper is judged by that."""
     for row in printed_rows(study, claim):
-        found = row.check.jumps
-        velocity = [jump for jump in found if jump.order == 1]
+        velocity = [(row, jump) for jump in row.check.jumps if jump.order == 1]
         if not velocity:
             continue
-        tops = largest_of_each_kind([(row, jump) for jump in velocity])
-        sizes = [f"{abs(jump_size(row, top)):.6g} {jump_unit(row, top)}" for _, top in tops]
+        tops, sizes = largest_of_each_kind(velocity), jumps_shown(velocity)
         most = " and ".join(
-            f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
+            f"in joint {top.joint} at t = {seconds(top.time)} by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
         )
         yield row.finding(
@@ -228,8 +225,8 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         elif jumps:
             largest_ones = " and ".join(
-                f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
-                f"{jump_size(row, top):.6g} {jump_unit(row, top)}"
+                f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {seconds(top.time)} by "
+                f"{jump_shown(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind, more = ClaimVerdict.INCONSISTENT, "jumps", ""
@@ -275,7 +272,7 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
             most = " and ".join(
-                f"at t = {top.time:.6g} s by {jump_size(row, top):.6g} {jump_unit(row, top)}"
+                f"at t = {seconds(top.time)} by {jump_shown(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind = ClaimVerdict.SUPPORTED, "jumps"
@@ -307,16 +304,15 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if not np.isfinite(limit):
                     continue
                 reach = box_reach(row, top)
-                # 0.01: share of a limit above which rounding blurs a peak too much to call the
-                # limit reached.
+                # Rounding by more than one per cent blurs a peak too much to call a limit reached.
                 if abs(abs(top.value) - limit) <= reach <= 0.01 * limit:
                     label = problem.joints[top.joint]
-                    value, around, bound = (
-                        row.in_units(quantity, x, label) for x in (abs(top.value), reach, limit)
+                    value, around = (
+                        row.in_units(quantity, x, label) for x in (abs(top.value), reach)
                     )
                     tight.append(
                         f"joint {label} {quantity} {value:.6g} ± {around:.1g} "
-                        f"at its limit {bound:.6g} {row.unit(quantity, label)}"
+                        f"at its limit {row.shown(quantity, limit, label)}"
                     )
         if tight:
             yield row.finding(

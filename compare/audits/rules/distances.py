@@ -24,20 +24,14 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
+from ..amounts import seconds
 from ..digit_ranges import below_certified
-from ..fixed_ratios import (
-    BELOW_AT_RATIOS,
-    at_ratios,
-    of_other_ratios,
-    off_ratios,
-    optimum_called,
-    planned_apart,
-)
+from ..fixed_ratios import at_ratios, off_ratios, optimum_called, planned_apart
 from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS, OPTIMAL
 from ..rounding import meet
 from ..stated import RowClaim, called, called_under, other_objective
-from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
+from ..stated_totals import contradicting_lows, rounded_up_low, total_excludes
 from ..study import Study, Total
 from .judged_rows import broken
 from .rule_group import INFORMS, Explained, finding, rule_group
@@ -92,7 +86,16 @@ def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     reference = reference_of(solution)
     other = off_ratios(row)
     if other is not None:
-        yield of_other_ratios(row, total.shown, other)
+        yield row.finding(
+            "TG302",
+            "other ratios",
+            f"Printed are {other}.",
+            "They answer a question other than the shortest total at these ratios, and are not "
+            "compared with it.",
+            basis=Basis.DIGITS,
+            printed=total.shown,
+            decides=False,
+        )
         return
     if reference is not None:
         yield _distance(row, total, reference, procedure)
@@ -112,7 +115,7 @@ def _distance(
     said = [
         f"Printed {shown} {set_beside(distance)} the "
         f"{optimum_called(solution.problem, reference.evidence)}{which}, "
-        f"{reference.upper:.6f} s{_bounded(reference)}."
+        f"{seconds(reference.upper, '.6f')}{_bounded(reference)}."
     ]
     minimised = other_objective(row.study.case, claim)
     informs = minimised is not None and distance.lowest > 0
@@ -120,7 +123,7 @@ def _distance(
         said = [
             f"The printed {shown} was not minimised for time alone ({minimised}); for information, "
             f"the shortest motion{which}{at_ratios(solution.problem)} takes "
-            f"{reference.upper:.6f} s, {reference.evidence}{_bounded(reference)}."
+            f"{seconds(reference.upper, '.6f')}, {reference.evidence}{_bounded(reference)}."
         ]
     timed = not isinstance(claim, TotalTimeClaim) and row.unmoved is None
     if timed and not informs:
@@ -128,7 +131,7 @@ def _distance(
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
             said.append(
-                f"Feasible time of the printed durations {verdict.feasible_time:.6f} s "
+                f"Feasible time of the printed durations {seconds(verdict.feasible_time, '.6f')} "
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
@@ -150,7 +153,7 @@ def _distance(
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
         printed=shown,
-        computed=f"{reference.upper:.6f} s",
+        computed=seconds(reference.upper, ".6f"),
         gap=distance,
         decides=False,
     )
@@ -171,7 +174,10 @@ def _below(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> str | No
     if loose := row.statement.declaration.loose:
         return f"{loose} are rounded numbers, which may explain it."
     if solution.problem.ratios is not None:
-        return BELOW_AT_RATIOS
+        return (
+            "The whole printed interval lies below it; other ratios of the durations, other "
+            "limits, another reading or other digits may explain that."
+        )
     share = _spread(row)
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
@@ -225,8 +231,13 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
     message = (
         f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
         f"gives {ranged(wide.lowest, wide.highest, '.4f')} s while every joint stays within "
-        f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at these optima"
-        + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
+        f"{seconds(wide.slack, 'g')} of its optimum, and {seconds(answer.total_time, '.4f')} at "
+        "these optima"
+        + (
+            f" (free rescaling of that motion: {seconds(tight, '.4f')})"
+            if tight is not None
+            else ""
+        )
         + f"; the printed {shown} lies {'inside' if inside else 'outside'} that range."
     )
     yield row.finding(
@@ -304,22 +315,17 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     inside = rounded_up_low(row, interval) <= solution.best <= interval[1]
     if inside and not total_excludes(row, solution.best):
         sides.agreeing.append(name)
-        sides.summed += is_sum(claim)
+        sides.summed += isinstance(claim, RowClaim) and claim.total is None
         sides.rounded_up |= not interval[0] <= solution.best
         return
-    distance = gap(interval, _reference(solution), feasible=False)
-    sides.open.append(
-        f"{name}: printed {shown} {set_beside(distance)} the "
-        f"{optimum_called(solution.problem, solution.evidence)} {solution.best:.6f} s, "
-        "and no proof decides whether rounding explains the difference"
-    )
-
-
-def _reference(solution: Solution) -> Reference:
-    """The reference interval of a solution that has a positive time."""
     reference = reference_of(solution)
     assert reference is not None
-    return reference
+    distance = gap(interval, reference, feasible=False)
+    sides.open.append(
+        f"{name}: printed {shown} {set_beside(distance)} the "
+        f"{optimum_called(solution.problem, solution.evidence)} {seconds(solution.best, '.6f')}, "
+        "and no proof decides whether rounding explains the difference"
+    )
 
 
 def _no_optimum(solution: Solution) -> str:
@@ -377,7 +383,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
             rounded = " if digits were rounded up to keep the limits" if sides.rounded_up else ""
             which = " or the ".join(sorted(called_so))
-            whose = what_agrees(len(sides.agreeing), sides.summed)
+            whose = _what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]
         yield finding(
             "TG302",
@@ -393,6 +399,17 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
         )
+
+
+def _what_agrees(count: int, sums: int) -> str:
+    """What agrees, up to the reference: printed totals, or sums of durations."""
+    if not sums:
+        return "Every printed total agrees with"
+    if sums < count:
+        whose = "Every printed total, or the sum of the printed durations if none is printed,"
+        return f"{whose} agrees with"
+    which = "the printed durations" if count == 1 else "the durations of each row"
+    return f"The sum of {which} agrees with"
 
 
 def _shorter(row: PrintedRow[AnyClaim], total: Total) -> tuple[str, Gap] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from ....problem import Interval, Printed
@@ -37,32 +38,62 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not isinstance(claim, ImprovementClaim):
             continue
-        slower_claim, faster_claim = (study.case.claim(i) for i in (claim.slower, claim.faster))
-        slower, faster = printed_total(slower_claim), printed_total(faster_claim)
+        sides = [study.case.claim(one) for one in (claim.slower, claim.faster)]
+        slower, faster = map(printed_total, sides)
         if slower is None or faster is None or slower.interval.lower <= 0:
             continue
-        between = f"{slower} and {faster} {study.time_unit}"
-        what = f"The reduction between the printed totals {between}"
-        root = f"improvement {claim.id}"
-        seconds = _difference(slower.interval, faster.interval)
+        longer, shorter = (total_allowed(study, side) for side in sides)
+        one = _Improved(study, claim, sides, slower, faster, (longer, shorter))
         if claim.percent is not None:
-            yield _percentage(study, claim, claim.percent, slower, faster, what, root)
+            yield _percentage(one, claim.percent)
         if claim.seconds is not None:
             cut = _difference(slower.truncated, faster.truncated)
-            mixed = _difference(*_allowed(study, claim))
-            unit = study.time_unit
-            said = claim, claim.seconds, seconds, cut, what, unit, root
-            yield compared("TG103", *said, mixed=mixed)
+            said = claim, claim.seconds, one.seconds, cut, one.what, study.time_unit, one.root
+            yield compared("TG103", *said, mixed=_difference(longer, shorter))
         if claim.percent is None and claim.seconds is None:
-            yield _unquantified(study, claim, slower, faster, seconds)
-        tables = [_table_total(study, c) for c in (slower_claim, faster_claim)]
-        # One table cannot say how two totals differ.
-        apart = tables[0] is not tables[1]
-        totals = [printed_total(t) for t in tables if t is not None and apart]
-        if claim.percent is not None and len(totals) == 2 and None not in totals:
-            fits = _meets(study, claim, claim.percent)
-            own = f"{between} give {claim.percent} %, but from" if fits else "From"
-            yield from _against_tables(study, claim, claim.percent, tables, totals, own)
+            yield _unquantified(one)
+        if claim.percent is not None:
+            yield from _against_tables(one, claim.percent)
+
+
+@dataclass(frozen=True)
+class _Improved:
+    """A printed improvement, and the two totals that it compares."""
+
+    study: Study
+    claim: ImprovementClaim
+    sides: Sequence[AnyClaim]
+    slower: Printed
+    faster: Printed
+    wide: tuple[Interval, Interval]
+    """Both totals, rounded or cut off, or the sum of digits that were."""
+
+    @property
+    def between(self) -> str:
+        return f"{self.slower} and {self.faster} {self.study.time_unit}"
+
+    @property
+    def what(self) -> str:
+        return f"The reduction between the printed totals {self.between}"
+
+    @property
+    def root(self) -> str:
+        return f"improvement {self.claim.id}"
+
+    @property
+    def seconds(self) -> Interval:
+        return _difference(self.slower.interval, self.faster.interval)
+
+    def share_fits(self, percent: Printed, base: str) -> bool:
+        """Whether the totals give a percentage of one of them, which is more than nothing."""
+        divides = base == "slower" or self.wide[1].lower > 0
+        return divides and meet(hull(percent), _share(*self.wide, base))
+
+    @property
+    def bases(self) -> list[str]:
+        """What the percentage may be a share of."""
+        positive = self.wide[1].lower > 0
+        return [base for base in allowed_bases(self.claim) if base == "slower" or positive]
 
 
 def _table_total(study: Study, claim: AnyClaim) -> AnyClaim | None:
@@ -90,70 +121,35 @@ def _share(slower: Interval, faster: Interval, base: str) -> Interval:
     return Interval(low, 100 * (slower.upper / faster.lower - 1))
 
 
-def _divides(base: str, faster: Interval) -> bool:
-    """Whether a total is more than nothing, so something may be a share of it."""
-    return base == "slower" or faster.lower > 0
-
-
-def _allowed(study: Study, claim: ImprovementClaim) -> tuple[Interval, Interval]:
-    """Both totals, rounded or cut off, or the sum of digits that were."""
-    slower, faster = (study.case.claim(one) for one in (claim.slower, claim.faster))
-    return total_allowed(study, slower), total_allowed(study, faster)
-
-
-def _meets(study: Study, claim: ImprovementClaim, percent: Printed) -> bool:
-    """Whether the claim's own two totals give its percentage."""
-    allowed = _allowed(study, claim)
-    bases = [base for base in allowed_bases(claim) if _divides(base, allowed[1])]
-    return any(meet(hull(percent), _share(*allowed, base)) for base in bases)
-
-
-def _percentage(
-    study: Study,
-    claim: ImprovementClaim,
-    percent: Printed,
-    slower: Printed,
-    faster: Printed,
-    what: str,
-    root: str,
-) -> Finding:
+def _percentage(one: _Improved, percent: Printed) -> Finding:
     """The percentage under each base that is admissible; the first that fits is taken."""
-    # A total may be the sum of digits cut off, and the percentage that of the whole numbers.
-    wide = _allowed(study, claim)
-    bases = [base for base in allowed_bases(claim) if _divides(base, wide[1])]
-    tried = []
-    for base in bases or ["slower"]:
-        share = f"{what}, as a share of {_SHARE_OF[base]},"
+    tried, slower, faster = [], one.slower, one.faster
+    bases = one.bases or ["slower"]
+    for base in bases:
+        share = f"{one.what}, as a share of {_SHARE_OF[base]},"
         rounded = _share(slower.interval, faster.interval, base)
         cut = _share(slower.truncated, faster.truncated, base)
-        mixed = _share(*wide, base)
         longer, shorter = raised(slower), raised(faster)
         up = _share(longer, shorter, base) if longer.lower > 0 < shorter.lower else None
-        said = claim, percent, rounded, cut, share, "%", root
-        found = compared("TG103", *said, mixed=mixed, raised_parts=up)
+        said = one.claim, percent, rounded, cut, share, "%", one.root
+        # A total may be the sum of digits cut off, and the percentage that of the whole numbers.
+        found = compared("TG103", *said, mixed=_share(*one.wide, base), raised_parts=up)
         tried.append(found.model_copy(update={"computed": f"{_as_printed(rounded, percent)} %"}))
     weights = list(Severity)
     best = max(range(len(tried)), key=lambda k: weights.index(tried[k].severity))
     found = tried[best]
     if len(tried) < 2 or (best == 0 and found.severity is Severity.INFO):
-        return found if found.severity is not Severity.ERROR else _of_the_other(found, claim, wide)
+        # The base that the file does not state may be the one that fits.
+        others = [base for base in _SHARE_OF if base not in allowed_bases(one.claim)]
+        fitting = [base for base in others if one.share_fits(percent, base)]
+        if found.severity is not Severity.ERROR or not fitting:
+            return found
+        return found.adding(f"As a share of {_SHARE_OF[fitting[0]]} it would be {percent} %.")
     other = 1 - best
     rest = [f"As a share of {_SHARE_OF[bases[other]]} it would be {tried[other].computed}."]
     if found.verdict is not ClaimVerdict.REFUTED:
         rest.append("The text leaves open which is meant.")
     return found.adding(*rest)
-
-
-def _of_the_other(
-    found: Finding, claim: ImprovementClaim, totals: tuple[Interval, Interval]
-) -> Finding:
-    """A finding on a percentage, with the base that the file does not state where that one fits."""
-    for base, words in _SHARE_OF.items():
-        if base in allowed_bases(claim) or not _divides(base, totals[1]):
-            continue
-        if claim.percent is not None and meet(hull(claim.percent), _share(*totals, base)):
-            return found.adding(f"As a share of {words} it would be {claim.percent} %.")
-    return found
 
 
 def _as_printed(share: Interval, percent: Printed) -> str:
@@ -165,14 +161,11 @@ def _as_printed(share: Interval, percent: Printed) -> str:
     return " to ".join(ends)
 
 
-def _unquantified(
-    study: Study, claim: ImprovementClaim, slower: Printed, faster: Printed, seconds: Interval
-) -> Finding:
+def _unquantified(one: _Improved) -> Finding:
+    study, slower, faster, seconds = one.study, one.slower, one.faster, one.seconds
     unit = study.time_unit
-    between = f"{slower} and {faster} {unit}"
-    sides = [study.case.claim(i) for i in (claim.slower, claim.faster)]
     verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "as claimed", ""
-    message = f"The printed totals are {between}"
+    message = f"The printed totals are {one.between}"
     if slower.text == faster.text:
         kind = "same total"
         message = (
@@ -181,7 +174,7 @@ def _unquantified(
         )
         # An improvement below the last digit is one. Only tables alike that are said to differ
         # speak against it.
-        if contradicted(study, sides):
+        if contradicted(study, one.sides):
             verdict = ClaimVerdict.INCONSISTENT
             more = (
                 "Their tables agree in every number, but elsewhere the paper prints different "
@@ -196,38 +189,37 @@ def _unquantified(
         message += ": the one called better is the longer"
     else:
         kind = "within rounding"
-        message = f"The printed totals {between} do not differ by more than their rounding"
+        message = f"The printed totals {one.between} do not differ by more than their rounding"
     return finding(
         "TG103",
-        claim,
+        one.claim,
         kind,
         f"{message}.",
         more,
         verdict=verdict,
         basis=Basis.DIGITS,
-        printed=between,
-        follows=doubted(study, sides),
+        printed=one.between,
+        follows=doubted(study, one.sides),
     )
 
 
-def _against_tables(
-    study: Study,
-    claim: ImprovementClaim,
-    percent: Printed,
-    tables: Sequence[AnyClaim | None],
-    totals: Sequence[Printed | None],
-    own: str,
-) -> Iterator[Finding]:
-    slower, faster = totals
-    assert slower is not None
-    assert faster is not None
-    longer, shorter = (total_allowed(study, t) for t in tables if t is not None)
+def _against_tables(one: _Improved, percent: Printed) -> Iterator[Finding]:
+    study, claim = one.study, one.claim
+    found_in = [_table_total(study, side) for side in one.sides]
+    tables = [table for table in found_in if table is not None]
+    # One table cannot say how two totals differ.
+    if len(tables) < 2 or tables[0] is tables[1]:
+        return
+    fits = any(one.share_fits(percent, base) for base in allowed_bases(claim))
+    own = f"{one.between} give {percent} %, but from" if fits else "From"
+    longer, shorter = (total_allowed(study, table) for table in tables)
     positive = min(longer.lower, shorter.lower) > 0
     found = [_share(longer, shorter, base) for base in allowed_bases(claim) if positive]
     if not found or any(meet(hull(percent), allowed) for allowed in found):
         return
     allowed = found[0]
-    where = " and ".join(t.where for t in tables if t is not None)
+    where = " and ".join(table.where for table in tables)
+    slower, faster = map(printed_total, tables)
     yield finding(
         "TG103",
         claim,
@@ -240,6 +232,6 @@ def _against_tables(
         basis=Basis.DIGITS,
         printed=f"{percent} %",
         computed=f"{span(allowed, 3)} %",
-        follows=doubted(study, [t for t in tables if t is not None]),
-        between=(claim.id, *(t.id for t in tables if t is not None)),
+        follows=doubted(study, tables),
+        between=(claim.id, *(table.id for table in tables)),
     )

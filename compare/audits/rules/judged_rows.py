@@ -33,10 +33,10 @@ def ratio_at_print(row: PrintedRow[AnyClaim]) -> str:
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
-    unit = row.unit(worst.quantity, worst.joint)
-    value = row.in_units(worst.quantity, abs(worst.value), worst.joint)
-    limit = row.in_units(worst.quantity, worst.limit, worst.joint)
-    return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
+    value, limit = (
+        row.shown(worst.quantity, one, worst.joint) for one in (abs(worst.value), worst.limit)
+    )
+    return f"the {worst.quantity} of {whose} reaches {value}, limit {limit}"
 
 
 def judged_row(row: PrintedRow[AnyClaim]) -> Finding:

@@ -80,7 +80,7 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
     study, claim = row.study, row.claim
     problem = row.posed()
     segments = len(problem.waypoints) - 1
-    verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+    meant = ClaimVerdict.NOT_CHECKABLE
     computed, at_print, passes = "", "", ""
     if len(claim.durations) != segments:
         message = (
@@ -104,13 +104,13 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
             )
         wherever = "" if claim.end_blends else ", wherever the end blends lie"
         if all(one.breaks for one in found):
-            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+            meant = ClaimVerdict.REFUTED
             message = (
                 "Linear segments with parabolic blends break a limit with these durations"
                 f"{wherever}, however the digits were rounded or cut off."
             )
         elif all(one.keeps for one in found):
-            verdict = ClaimVerdict.SUPPORTED
+            meant = ClaimVerdict.SUPPORTED
             message = (
                 "Linear segments with parabolic blends keep the limits on velocity and "
                 f"acceleration with these durations{wherever}."
@@ -125,16 +125,14 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
                 "The printed digits do not decide whether linear segments with parabolic blends "
                 "keep the limits with these durations."
             )
-    found_verdict = verdict
-    verdict, severity = said_of(study.case, claim, verdict, severity)
+    verdict, _ = said_of(study.case, claim, meant, Severity.INFO)
     return row.finding(
         "TG210",
-        str(found_verdict),
+        str(meant),
         message,
         at_print,
         passes,
-        UNSAID if verdict is not found_verdict else "",
-        severity=severity,
+        UNSAID if verdict is not meant else "",
         verdict=verdict,
         basis=Basis.ENCLOSURE,
         printed=study.durations_digits(claim),
@@ -156,12 +154,12 @@ def _judged(row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends) 
     keeps = False
     with suppress(CaseError):  # the tightest ranges may be empty
         tight = row.posed(Digits.TIGHTEST).limits.sides.min(axis=0)
-        keeps = (
+        keeps = bool(
             (wide.velocity.size.high <= tight[:, 0]).all()
             and (wide.acceleration.high <= tight[:, 1]).all()
             and (wide.room.low >= 0).all()
         )
-    return _Found(bool(breaks), bool(keeps), _worst(row, problem, plain))
+    return _Found(bool(breaks), keeps, _worst(row, problem, plain))
 
 
 def _blended(
@@ -207,13 +205,11 @@ def _worst(row: PrintedRow[Claim], problem: Problem, plain: Blended) -> str:
             joint = problem.joints[at[1]]
             if np.isinf(size[at]):
                 return f"the speed of joint {joint} jumps, for a blend printed as 0"
-            unit = row.unit(quantity, joint)
-            value = row.in_units(quantity, float(size[at]), joint)
-            limit = row.in_units(quantity, float(limits[at[1], order]), joint)
+            value = row.shown(quantity, float(size[at]), joint)
+            limit = row.shown(quantity, float(limits[at[1], order]), joint)
             best = (
                 float(ratio[at]),
-                f"the {quantity} of joint {joint} reaches {value:.6g} {unit}, "
-                f"limit {limit:.6g} {unit}",
+                f"the {quantity} of joint {joint} reaches {value}, limit {limit}",
             )
     return best[1]
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
+from ....problem import QUANTITIES, Array, Printed, Trajectory, extrema, fit
 from ....problem.cases import (
     AnyClaim,
-    Claim,
     MeasureClaim,
     PeakClaim,
     ValueClaim,
@@ -195,8 +194,8 @@ def value_beside(
     def sides(trajectory: Trajectory, durations: Array) -> tuple[float, float] | None:
         if instant is None and at is None:
             return None
-        time = _time_of(problem.curve, durations, at) if instant is None else instant  # type: ignore[arg-type]
-        return _near(trajectory, time, j, order)
+        passed = durations[: problem.curve.waypoint_breaks[at or 0]].sum()
+        return _near(trajectory, float(passed) if instant is None else instant, j, order)
 
     pair = sides(drawn, printed_durations)
     jumps = pair is not None and abs(pair[0] - pair[1]) > ROUNDING * max(map(abs, pair))
@@ -219,11 +218,6 @@ def value_beside(
             samples.append({"": unit * float(top)})
     shown = row.unit(claim.derivative, joint)
     return nearest_number(printed, shown, joint, meant, samples, row.boxes, spread)
-
-
-def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
-    """When a way-point is passed, s."""
-    return float(durations[: curve.waypoint_breaks[waypoint]].sum())
 
 
 def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[float, float]:
@@ -251,29 +245,20 @@ def value_described(row: PrintedRow[AnyClaim], claim: ValueClaim, one: Beside) -
 
 
 _Value = TypeVar("_Value", PeakClaim, MeasureClaim, ValueClaim)
-_FITTING = ClaimVerdict.SUPPORTED, ""
-"""What it says that a printed number fits: verdict and no note."""
 
 
-def _misfit(row: PrintedRow[Claim]) -> tuple[ClaimVerdict, str]:
-    """What it says that a printed number does not fit the motion: a verdict, and a note or "".
+def _judged(
+    study: Study,
+    rule: str,
+    kind: type[_Value],
+    beside: Callable[[PrintedRow[AnyClaim], _Value, Printed, str | None], Beside | None],
+    described: Callable[[PrintedRow[AnyClaim], _Value, Beside], str],
+    without: str = "Without durations, this cannot be computed.",
+) -> Iterator[Finding]:
+    """Findings on each claim of a kind beside each motion that it may describe.
 
-    What rounds to derivatives at the ends, knots and parameters is not looked at, and may be why.
-    """
-    loose = row.statement.declaration.loose
-    if not loose:
-        return ClaimVerdict.INCONSISTENT, ""
-    return ClaimVerdict.NOT_CHECKABLE, f"{loose} are rounded numbers, which may explain it."
-
-
-@dataclass(frozen=True)
-class MotionNumbers(Generic[_Value]):
-    """A rule on printed numbers that follow from a motion.
-
-    Attributes
+    Parameters
     ----------
-    kind : type
-        The claims that print such numbers.
     beside : callable
         From a row of durations, a claim, one of its numbers and its joint; None if the motion
         has no such number.
@@ -282,50 +267,52 @@ class MotionNumbers(Generic[_Value]):
     without : str
         What is said of a claim where nothing printed defines such a motion.
     """
+    for claim in study.claims:
+        # TG304 judges numbers of a profile.
+        if not isinstance(claim, kind) or profile_of(study.case.claims, claim) is not None:
+            continue
+        meant = motions_of(study.case.claims, claim)
+        for row in (row for motion in meant for row in printed_rows(study, motion)):
+            if claim.problem in (None, row.problem) and row.has_curve:
+                each = study.printed_numbers(claim)
+                found = [beside(row, claim, number, joint) for joint, number in each]
+                known = [one for one in found if one is not None]
+                # It tells what does not fit, or everything where all of it does.
+                told = [one for one in known if not one.fits] or known
+                if known:
+                    said = [described(row, claim, one) for one in told]
+                    yield _found(row, rule, claim, known, told, "; ".join(said))
+        if not meant:
+            yield finding(rule, claim, "no motion", without, basis=Basis.TEXT)
 
-    rule: str
-    kind: type[_Value]
-    beside: Callable[[PrintedRow[AnyClaim], _Value, Printed, str | None], Beside | None]
-    described: Callable[[PrintedRow[AnyClaim], _Value, Beside], str]
-    without: str
 
-    def judge(self, study: Study) -> Iterator[Finding]:
-        """Findings on each claim of the kind beside each motion that it may describe."""
-        for claim in study.claims:
-            # TG304 judges numbers of a profile.
-            if not isinstance(claim, self.kind) or profile_of(study.case.claims, claim) is not None:
-                continue
-            meant = motions_of(study.case.claims, claim)
-            for row in (row for motion in meant for row in printed_rows(study, motion)):
-                if claim.problem in (None, row.problem) and row.has_curve:
-                    each = study.printed_numbers(claim)
-                    found = [self.beside(row, claim, number, joint) for joint, number in each]
-                    if known := [one for one in found if one is not None]:
-                        yield self._finding(row, claim, known)
-            if not meant:
-                yield finding(self.rule, claim, "no motion", self.without, basis=Basis.TEXT)
-
-    def _finding(
-        self, row: PrintedRow[AnyClaim], claim: _Value, found: Sequence[Beside]
-    ) -> Finding:
-        """It tells what does not fit, or everything where all of it does."""
-        wrong = [one for one in found if not one.fits]
-        said = [self.described(row, claim, one) for one in wrong or found]
-        verdict, note = _misfit(row) if wrong else _FITTING
-        clash = verdict is ClaimVerdict.INCONSISTENT
-        return row.finding(
-            self.rule,
-            ", ".join(_word(one) for one in wrong or found),
-            f"For the printed durations ({called(row.claim)}): {'; '.join(said)}.",
-            note,
-            verdict=verdict,
-            basis=Basis.CHECK if all(one.met for one in found) else Basis.COMPUTED,
-            claim=claim.id,
-            printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(one.around for one in found),
-            root=f"{claim.quantity}s of {row.claim.id}" if clash else "",
-            between=(claim.id, row.claim.id) if clash else (),
-        )
+def _found(
+    row: PrintedRow[AnyClaim],
+    rule: str,
+    claim: _Value,
+    found: Sequence[Beside],
+    told: Sequence[Beside],
+    said: str,
+) -> Finding:
+    verdict, note, loose = ClaimVerdict.SUPPORTED, "", row.statement.declaration.loose
+    if not told[0].fits:
+        verdict = ClaimVerdict.NOT_CHECKABLE if loose else ClaimVerdict.INCONSISTENT
+        # What rounds to derivatives at the ends, knots and parameters is not looked at.
+        note = f"{loose} are rounded numbers, which may explain it." if loose else ""
+    clash = verdict is ClaimVerdict.INCONSISTENT
+    return row.finding(
+        rule,
+        ", ".join(map(_word, told)),
+        f"For the printed durations ({called(row.claim)}): {said}.",
+        note,
+        verdict=verdict,
+        basis=Basis.CHECK if all(one.met for one in found) else Basis.COMPUTED,
+        claim=claim.id,
+        printed=", ".join(map(str, claim.printed)),
+        computed="; ".join(one.around for one in found),
+        root=f"{claim.quantity}s of {row.claim.id}" if clash else "",
+        between=(claim.id, row.claim.id) if clash else (),
+    )
 
 
 def _word(one: Beside) -> str:
@@ -333,7 +320,7 @@ def _word(one: Beside) -> str:
     return str(one.kind) if one.linear is not None else "fits" if one.fits else "off"
 
 
-judge_peaks = rule_group(
+@rule_group(
     TG203=Explained(
         "Printed peaks follow from the printed durations",
         "Does a printed peak belong to the motion that it describes?",
@@ -345,17 +332,14 @@ judge_peaks = rule_group(
         "The exact peak is 21.351 rad/s². A printed 21.35 is rounded, 21.34 comes from sampling, "
         "and 1223 is the same number in degrees.",
     )
-)(
-    MotionNumbers(
-        "TG203",
-        PeakClaim,
-        beside,
-        peak_described,
-        "No durations are printed from which this peak could be computed.",
-    ).judge
 )
-"""Findings of TG203."""
-judge_measures = rule_group(
+def judge_peaks(study: Study) -> Iterator[Finding]:
+    """Findings of TG203."""
+    without = "No durations are printed from which this peak could be computed."
+    return _judged(study, "TG203", PeakClaim, beside, peak_described, without)
+
+
+@rule_group(
     TG208=Explained(
         "Printed means and integrals follow from the printed durations",
         "Does a printed mean, root mean square or integral of velocity, acceleration or jerk "
@@ -365,17 +349,13 @@ judge_measures = rule_group(
         "Inconsistent if none of these explains it.",
         "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
     )
-)(
-    MotionNumbers(
-        "TG208",
-        MeasureClaim,
-        measure_beside,
-        measure_described,
-        "Without durations, this cannot be computed.",
-    ).judge
 )
-"""Findings of TG208."""
-judge_values = rule_group(
+def judge_measures(study: Study) -> Iterator[Finding]:
+    """Findings of TG208."""
+    return _judged(study, "TG208", MeasureClaim, measure_beside, measure_described)
+
+
+@rule_group(
     TG211=Explained(
         "Printed values at one place follow from the printed durations",
         "Does a printed position or derivative at a way-point, at an instant or at its largest "
@@ -385,13 +365,7 @@ judge_values = rule_group(
         "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
         "the printed times passes it at -175.71 °/s.",
     )
-)(
-    MotionNumbers(
-        "TG211",
-        ValueClaim,
-        value_beside,
-        value_described,
-        "Without durations, this cannot be computed.",
-    ).judge
 )
-"""Findings of TG211."""
+def judge_values(study: Study) -> Iterator[Finding]:
+    """Findings of TG211."""
+    return _judged(study, "TG211", ValueClaim, value_beside, value_described)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
+from typing import Any
 
 import numpy as np
 
 from ....problem.cases import ConvergenceClaim
 from ...documents import Basis, Effect, Finding, Procedure, quoted, ranged
 from ...gaps import SETTLED
+from ..amounts import percent, seconds
 from ..instances import (
     MIDDLE,
     InstancesResult,
@@ -31,9 +32,6 @@ HANDLED = {
 }
 """What each objective does, in words."""
 
-_informing = partial(Finding, rule="TG404", basis=Basis.REPLAY, decides=False)
-"""Nothing here decides: the instances are not the paper's."""
-
 
 @rule_group(
     TG404=Explained(
@@ -50,8 +48,7 @@ def judge_instances(study: Study) -> Iterator[Finding]:
     for block in study.case.instances:
         why = unexamined(study, block) if readings_of(study, block) else None
         if why is not None:
-            said = f"Family {block.id} is not examined: {why}."
-            yield _informing(kind="not examined", sentences=(said,))
+            yield _informing(None, "not examined", f"Family {block.id} is not examined: {why}.")
     for block in examinable(study):
         result = examined(study, block)
         yield _summary(result)
@@ -74,18 +71,18 @@ def placed(result: InstancesResult) -> str:
         if reading not in inside:
             sides.setdefault(_aside(result, reading), []).append(reading)
     said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
-    middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
-    parts = (
-        [f"usual under {', '.join(quoted(one, result.labels) for one in inside)}(within {middle})"]
-        if inside
-        else []
-    )
+    middle = f"the middle {percent(MIDDLE, 'g')} of the reductions of one run against one run"
+    parts = []
+    if inside:
+        parts.append(f"usual under {_quoted(result, inside)}(within {middle})")
     for side, own in sides.items():
-        what = "" if inside or parts else f", outside {middle}"
-        parts.append(
-            f"unusual under {', '.join(quoted(one, result.labels) for one in own)} ({side}){what}"
-        )
+        what = "" if parts else f", outside {middle}"
+        parts.append(f"unusual under {_quoted(result, own)} ({side}){what}")
     return f"{said}{'; it is '.join(parts)}."
+
+
+def _quoted(result: InstancesResult, readings: list[str]) -> str:
+    return ", ".join(quoted(one, result.labels) for one in readings)
 
 
 def attributed(result: InstancesResult) -> Iterator[str]:
@@ -124,20 +121,27 @@ def medians(result: InstancesResult, effect: Effect, at: int = 0) -> tuple[float
 def _summary(result: InstancesResult) -> Finding:
     block = result.block
     span = medians(result, Effect.BOTH)
-    printed = None if result.printed is None else percent_range(*result.printed)
     computed = f"medians {percent_range(*span, digits=1)}" if span else "no pair of answers"
     return _informing(
-        claim=block.claim,
-        printed=printed,
+        block.claim,
+        "over the readings",
+        placed(result),
+        *attributed(result),
+        block.why,
+        "These are not the paper's instances, so they decide nothing about its totals.",
+        printed=_printed(result),
         computed=computed,
-        kind="over the readings",
-        sentences=(
-            placed(result),
-            *attributed(result),
-            block.why,
-            "These are not the paper's instances, so they decide nothing about its totals.",
-        ),
     )
+
+
+def _informing(claim: str | None, kind: str, *sentences: str, **facts: Any) -> Finding:
+    """What decides nothing, for the instances are not the paper's."""
+    facts |= {"claim": claim, "kind": kind, "sentences": sentences}
+    return Finding(rule="TG404", basis=Basis.REPLAY, decides=False, **facts)
+
+
+def _printed(result: InstancesResult) -> str | None:
+    return None if result.printed is None else percent_range(*result.printed)
 
 
 def _under(result: InstancesResult, reading: str) -> Finding:
@@ -151,17 +155,15 @@ def _under(result: InstancesResult, reading: str) -> Finding:
             ("usual", "within") if reproduced(result, reading) else ("unusual", "outside")
         )
         parts.append(
-            f"The printed reduction of {percent_range(*result.printed)} is {usual} "
-            f"here: it "
-            f"lies {inside} the middle {100 * MIDDLE:g} % of the reductions, and "
-            f"{100 * least:.3g} % of them are at least as large."
+            f"The printed reduction of {_printed(result)} is {usual} here: it lies {inside} the "
+            f"middle {percent(MIDDLE, 'g')} of the reductions, and {percent(least)} of them are at "
+            "least as large."
         )
     steps = ", ".join(f"{step:g}" for step in block.lengths)
     parts += [
-        f"Reductions of one run against one run on {result.instances} instances, at "
-        f"steps of "
+        f"Reductions of one run against one run on {result.instances} instances, at steps of "
         f"{steps} {block.unit}, with {block.runs} runs each: {both}.",
-        f"The paper's procedure is faster in {100 * both.shorter:.3g} % of the pairs.",
+        f"The paper's procedure is faster in {percent(both.shorter)} of the pairs.",
     ]
     low, high = result.median_interval(reading, Effect.BOTH)
     if np.isfinite(low):
@@ -183,21 +185,13 @@ def _under(result: InstancesResult, reading: str) -> Finding:
         ]
         parts.append(
             f"If {HANDLED[objective]}, curve and algorithm together save {pair[0]}, and the "
-            f"algorithm alone "
-            f"saves {pair[1]}."
+            f"algorithm alone saves {pair[1]}."
         )
     failed = result.failed(reading)
     if failed:
         parts.append(f"{failed} runs found no motion within the limits.")
-    printed = None if result.printed is None else percent_range(*result.printed)
-    return _informing(
-        claim=block.claim,
-        reading=reading,
-        printed=printed,
-        computed=str(both),
-        kind="under a reading",
-        sentences=tuple(parts),
-    )
+    facts = {"reading": reading, "printed": _printed(result), "computed": str(both)}
+    return _informing(block.claim, "under a reading", *parts, **facts)
 
 
 def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
@@ -209,8 +203,8 @@ def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
         low, middle, high = np.quantile(totals, [0.0, 0.5, 1.0])
         which = "it is compared with" if route == 0 else "of the paper"
         yield (
-            f"The paper prints {printed}; the procedure {which} takes {middle:.3g} s at the median "
-            f"({ranged(low, high, '.3g')} s)."
+            f"The paper prints {printed}; the procedure {which} takes {seconds(middle, '.3g')} at "
+            f"the median ({ranged(low, high, '.3g')} s)."
         )
 
 
@@ -221,18 +215,16 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         shares.append(float((settled <= claim.iterations.value).mean()) if settled.size else 0.0)
     low, high = 100 * min(shares), 100 * max(shares)
     each = ", ".join(
-        f"{100 * share:.3g} % under {quoted(reading, result.labels)}"
+        f"{percent(share)} under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
     return _informing(
-        claim=claim.id,
+        claim.id,
+        "convergence",
+        f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
+        f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its "
+        f"best total is then within {percent(SETTLED, 'g')} of the final one ({each}).",
+        "The instances are not the paper's.",
         printed=f"{claim.iterations} iterations",
         computed=f"{ranged(low, high, '.3g')} % of the runs",
-        kind="convergence",
-        sentences=(
-            f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
-            f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its "
-            f"best total is then within {100 * SETTLED:g} % of the final one ({each}).",
-            "The instances are not the paper's.",
-        ),
     )

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from itertools import combinations
 from math import inf, isfinite, log
 
 from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
+from ..amounts import percent
 from ..printed_row import PrintedRow, printed_rows
 from ..stated import RowClaim, called
 from ..study import Study
 from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
-from .rule_group import INFORMS, Explained, rule_group
-
-_informing = partial(Finding, rule="TG108", decides=False)
-"""Nothing here decides: a printer's slip is not a fault of the numbers."""
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 
 @rule_group(
@@ -32,7 +29,7 @@ _informing = partial(Finding, rule="TG108", decides=False)
     )
 )
 def judge_places(study: Study) -> Iterator[Finding]:
-    """Findings of TG108, which inform and decide nothing."""
+    """Findings of TG108. They decide nothing: a slip of the printer is no fault of the numbers."""
     for claim in study.claims:
         if isinstance(claim, PeakClaim):
             for motion in motions_of(study.case.claims, claim):
@@ -66,8 +63,8 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                 distance, motion, other = min(found, key=lambda one: one[0])
                 whose = "" if other is None else f", joint {other}"
                 said.append(
-                    f"{number} lies {100 * mine.distance:+.2g} % from the peak of its own motion "
-                    f"and {100 * distance:.2g} % from that of {called(motion)}{whose}"
+                    f"{number} lies {percent(mine.distance, '+.2g')} from the peak of its own "
+                    f"motion and {percent(distance, '.2g')} from that of {called(motion)}{whose}"
                 )
         if said:
             yield row.finding(
@@ -97,14 +94,14 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             for j, label in enumerate(problem.joints)
             if label != claim.joint
         )
-        # 0.01: share by which a row may miss the limits of another and still be said to fit it.
+        # Within one per cent a row is said to fit the limits of another.
         if best <= 0.01:
             yield row.finding(
                 "TG108",
                 "rows",
                 f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
-                f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
-                f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
+                f"to be stretched by {percent(own, '.2g')} for its own limits and fit those of "
+                f"joint {joint} within {percent(best, '.2g')}, as if rows had been exchanged in "
                 "print.",
                 decides=False,
                 basis=Basis.CHECK,
@@ -121,22 +118,21 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
     rows = [c for c in study.case.claims if isinstance(c, DurationsClaim)]
     for first, second in combinations(rows, 2):
         texts = [[d.text for d in c.durations] for c in (first, second)]
-        # 3: durations that two rows need in common before equal digits are worth a word.
+        # Two equal durations may be equal by chance.
         if len(texts[0]) < 3 or texts[0] != texts[1] or len(set(texts[0])) == 1:
             continue
-        if _named(first) == _named(second) or set(doubted(study, [first])) & set(
-            doubted(study, [second])
-        ):
+        tables = [set(doubted(study, [one])) for one in (first, second)]
+        if _named(first) == _named(second) or tables[0] & tables[1]:
             continue
-        yield _informing(
+        yield finding(
+            "TG108",
+            second,
+            "equal rows",
+            f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
+            "for different things.",
             basis=Basis.DIGITS,
-            claim=second.id,
+            decides=False,
             printed=", ".join(texts[1]),
-            kind="equal rows",
-            sentences=(
-                f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
-                "for different things.",
-            ),
         )
 
 

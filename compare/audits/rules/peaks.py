@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,11 +20,12 @@ from ....problem import (
 )
 from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..amounts import percent
 from ..printed_row import PrintedRow, printed_rows
-from ..rounding import ROUNDING, Agreement, RoundingBox
+from ..rounding import ROUNDING, Agreement
 from ..stated import DERIVATIVES, place
 from ..study import Study
-from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change
+from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change, split
 from .rule_group import Explained, rule_group
 
 _PHASES = 8
@@ -51,9 +52,7 @@ def _reach(row: PrintedRow[Claim], points: list[Extremum], share: Array) -> floa
 
 
 def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
-    """Largest change of a peak that is found in the rounding box.
-
-    It has the SI unit of the peak.
+    """Largest change of a peak that is found in the rounding box, in SI units.
 
     Parameters
     ----------
@@ -62,26 +61,23 @@ def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float
     alone : bool
         Whether it is that of its own joint, and not of all.
     share : float
-        How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
+        How wide the box is, see `largest_change`.
     """
     problem = row.posed()
     joints = [top.joint] if alone else range(len(problem.joints))
 
-    def look(h: RoundingBox, q: RoundingBox) -> Look:
-        moved = fit(problem.curve, q.value, h.value)
+    def look(at: Array, low: Array, high: Array) -> Look:
+        q, h = split(at, row.boxes)
+        moved = fit(problem.curve, q, h)
         ends = (e for j in joints for e in extrema(moved, j, top.order))
         here = max(ends, key=lambda e: abs(e.value))
-        g = peak_gradients(replace(problem, waypoints=q.value), h.value, [here])
-        by_angle = np.zeros_like(q.value)
+        g = peak_gradients(replace(problem, waypoints=q), h, [here])
+        by_angle = np.zeros_like(q)
         by_angle[:, here.joint] = g.waypoints[0]
         slopes = np.sign(here.value) * np.append(g.durations[0], by_angle)
-        down, up = (
-            slopes * np.append(getattr(h, end) - h.value, getattr(q, end) - q.value)
-            for end in ("lower", "upper")
-        )
-        return Look(abs(here.value), down, up)
+        return Look(abs(here.value), slopes * (low - at), slopes * (high - at))
 
-    return largest_change(*row.boxes, share, look)
+    return largest_change(row.boxes, share, look)
 
 
 def largest(row: PrintedRow[Claim], order: int) -> list[Extremum]:
@@ -105,10 +101,6 @@ def beside(
 
     Parameters
     ----------
-    claim : PeakClaim
-        Says which derivative.
-    printed : Printed
-        One of its numbers.
     joint : str or None
         Label of the joint; the largest over all joints if None.
     """
@@ -151,9 +143,9 @@ def beside(
         found = of(exact, max(reach, near), max(2 * reach, far), least)
     if joint is not None or len(tops) == 1 or found.fits:
         return found
-    whole = largest_norm(row, order)
+    whole, reach = largest_norm(row, order)
     least = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
-    return replace(found, norm=of(whole.largest, whole.reach, 2 * whole.reach, least))
+    return replace(found, norm=of(whole, reach, 2 * reach, least))
 
 
 def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
@@ -169,30 +161,11 @@ def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
     return row.once("samples", compute, order)
 
 
-@dataclass(frozen=True)
-class Norm:
-    """Largest norm of a derivative over the joints.
+def largest_norm(row: PrintedRow[Claim], order: int) -> tuple[float, float]:
+    """Largest norm of a derivative over the joints, and its first-order change by rounding.
 
-    Attributes
-    ----------
-    largest : float
-        At the printed durations and way-points: the true maximum where pieces are polynomials in
-        time, else the largest of `_NORM_PLACES` values a piece, refined.
-    reach : float
-        Its first-order change over all values that round to the printed digits.
-    """
-
-    largest: float
-    reach: float
-
-
-def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
-    """Largest norm of a derivative on a printed motion.
-
-    Parameters
-    ----------
-    order : int
-        1 for velocity, 2 for acceleration, 3 for jerk.
+    It is the true maximum where pieces are polynomials in time, else the largest of `_NORM_PLACES`
+    values a piece, refined.
     """
     motion = row.motion
     top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))
@@ -200,7 +173,7 @@ def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
     points = [Extremum(j, piece, order, s, 0.0, float(v)) for j, v in enumerate(values)]
     # The norm's gradient weighs each joint's by its share; at the top its place does not count.
     share = values / top if top else np.zeros_like(values)
-    return Norm(top, _reach(row, points, share))
+    return top, _reach(row, points, share)
 
 
 def _norm_values(trajectory: Trajectory, piece: int, order: int, places: Array) -> Array:
@@ -250,12 +223,11 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     exact = one.around
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed as {one.printed}"
     room = ""
-    # 0.05: share of a peak above which the room that digits leave is said: what then fits tells
-    # little.
+    # What fits where digits leave more than 5 % of room tells little.
     if one.exact and one.reach > 0.05 * one.exact:
-        room = f", which allows {100 * one.reach / one.exact:.2g} % either way"
+        room = f", which allows {percent(one.reach / one.exact, '.2g')} either way"
     norm = "" if one.norm is None else _of_norm(one.norm)
-    away = f"{100 * one.distance:+.2g} %"
+    away = percent(one.distance, "+.2g")
     return (
         said
         + {
@@ -293,14 +265,15 @@ def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
     return list(found.values())
 
 
-def jump_size(row: PrintedRow[Claim], jump: Jump) -> float:
-    """Size of a jump in the unit of its joint."""
-    return row.in_units(DERIVATIVES[jump.order], jump.size, jump.joint)
+def jump_shown(row: PrintedRow[Claim], jump: Jump, form: str = ".6g") -> str:
+    """Size of a jump as a sentence writes it."""
+    return row.shown(DERIVATIVES[jump.order], jump.size, jump.joint, form)
 
 
-def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
-    """The unit of a jump, as a sentence writes it."""
-    return row.unit(DERIVATIVES[jump.order], jump.joint)
+def jumps_shown(jumps: Sequence[_Jump], form: str = ".6g") -> list[str]:
+    """Sizes of the largest jump of each kind of joints, without their signs."""
+    largest_ones = largest_of_each_kind(jumps)
+    return [jump_shown(row, jump, form).removeprefix("-") for row, jump in largest_ones]
 
 
 @rule_group(
@@ -363,10 +336,9 @@ def _above(row: PrintedRow[AnyClaim], peak: PeakClaim) -> list[str]:
         measured = row.measured(number, peak.derivative, label)
         least = measured.value - (measured.upper - measured.lower)
         if np.isfinite(limit) and least > limit * (1.0 + ROUNDING):
-            shown = row.in_units(peak.derivative, limit, label)
-            unit = row.unit(peak.derivative, label)
+            unit, shown = row.unit(peak.derivative, label), row.shown(peak.derivative, limit, label)
             found.append(
                 f"{number} {unit} for the {peak.derivative} of joint {label}, whose "
-                f"limit is at most {shown:.6g} {unit}, however its digits are read"
+                f"limit is at most {shown}, however its digits are read"
             )
     return found

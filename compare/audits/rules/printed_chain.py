@@ -64,34 +64,30 @@ class _Match:
 )
 def judge_kinematics(study: Study) -> Iterator[Finding]:
     """Set the joint table against the printed positions, for every reading."""
+    statements = (c for c in study.case.claims if isinstance(c, StatementClaim))
+    # The statement that angles and positions belong together, if one is made.
+    own = next((c.id for c in statements if c.checks == "kinematics"), None)
+    for found in _found(study):
+        yield found.model_copy(update={"claim": own})
+
+
+def _found(study: Study) -> Iterator[Finding]:
     case, dh = study.case, study.case.dh
     if not case.cartesian:
         return
     if dh is None:
         said = "Positions of the end are printed, but no table of the robot."
-        yield _of_claim(study, _not_checkable(None, said))
+        yield _not_checkable(None, said)
         return
     for reading in study.readings:
         chains: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
             statement = case.statement(pid, rid)
+            same = statement.waypoints.points, statement.units.position
             if rid == reading:
-                chains.setdefault(
-                    (statement.waypoints.points, statement.units.position), (pid, statement)
-                )
+                chains.setdefault(same, (pid, statement))
         for pid, statement in chains.values():
-            found = _compared(study, dh, statement, reading, pid if len(chains) > 1 else None)
-            yield _of_claim(study, found)
-
-
-def _of_claim(study: Study, finding: Finding) -> Finding:
-    """The finding about the statement that angles and positions belong together, if one is made."""
-    own = (
-        c.id
-        for c in study.case.claims
-        if isinstance(c, StatementClaim) and c.checks == "kinematics"
-    )
-    return finding.model_copy(update={"claim": next(own, None)})
+            yield _compared(study, dh, statement, reading, pid if len(chains) > 1 else None)
 
 
 def _compared(
@@ -169,12 +165,10 @@ def _places(study: Study, statement: Statement) -> list[tuple[int | None, Cartes
     places = study.case.cartesian
     found: list[tuple[int | None, Cartesian]] = []
     for k, place in enumerate(places):
+        at = k if len(places) == count else None
         if place.waypoint is not None:
-            found.append(
-                (labels.index(place.waypoint) if place.waypoint in labels else None, place)
-            )
-        else:
-            found.append((k if len(places) == count else None, place))
+            at = labels.index(place.waypoint) if place.waypoint in labels else None
+        found.append((at, place))
     return found
 
 
@@ -199,7 +193,7 @@ def _match(
         xyz = [to_si(number, place.unit) for number in place.values]
         point = np.array([m.value for m in xyz])
         halves = np.array([(m.upper - m.lower) / 2 for m in xyz])
-        # 1e-9: distance that float arithmetic alone could leave, m.
+        # Float arithmetic alone could leave 1e-9 m.
         allowed = dh.rounding(variants[0]) + loose + float(np.linalg.norm(halves)) + 1e-9
         slack.append(allowed)
         for found, chain in zip(near, variants, strict=True):
@@ -231,8 +225,6 @@ def _unsigned(
         assert k is not None
         point = np.array([to_si(number, place.unit).value for number in place.values])
         held, _ = _held(variants[0], joints, k)
-        # 0.1: share of what rounding explains to which a distance is bounded where signs are
-        # searched.
         least = min(
             proximity(chain, xyz, angles, tolerance=0.1 * slack[at]).lower
             for chain in variants
@@ -241,7 +233,7 @@ def _unsigned(
         )
         if least > slack[at] and (clearest is None or least > clearest[1]):
             clearest = at, least
-        # 2.0: multiple of what rounding explains from which on a miss needs no clearer one.
+        # A miss by twice what rounding explains needs no clearer one.
         if least > 2.0 * slack[at]:
             break
     return clearest
@@ -297,7 +289,9 @@ def _judged(
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
     numbers = "values" if any(statement.linear) else "angles"
-    given = f"The {numbers} of {_named(printed)} are read in {_units(statement)}"
+    units = statement.units.position
+    read_in = ", ".join(units) if isinstance(units, tuple) else str(units)
+    given = f"The {numbers} of {_named(printed)} are read in {read_in}"
     given += f"; {_named(free)} may have any value." if free else "."
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
@@ -353,12 +347,6 @@ def _judged(
         computed=f"smallest distance from the farthest position: {worst}",
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
-
-
-def _units(statement: Statement) -> str:
-    """The units of the robot's joints, each once where one after the other has the same."""
-    units = statement.units.position
-    return ", ".join(units) if isinstance(units, tuple) else str(units)
 
 
 def _named(labels: list[str]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from ....problem import Interval, Printed
@@ -67,9 +67,9 @@ def raised(number: Printed) -> Interval:
     return Interval(number.fraction - number.unit, number.fraction)
 
 
-def _sum(parts: Sequence[Interval]) -> Interval:
-    zero = Fraction(0)
-    return Interval(sum((p.lower for p in parts), zero), sum((p.upper for p in parts), zero))
+def _sum(parts: Iterable[tuple[Interval, Fraction]]) -> Interval:
+    lower, upper = zip(*((p.lower * share, p.upper * share) for p, share in parts), strict=True)
+    return Interval(sum(lower, Fraction(0)), sum(upper, Fraction(0)))
 
 
 def shown(x: Fraction | float, places: int = 6) -> str:
@@ -124,7 +124,7 @@ def compared(
         (Agreement.CUT_OFF, printed.truncated, cut),
         (Agreement.MIXED, hull(printed), whole),
         *([(Agreement.RAISED, up, whole)] if coarser else []),
-        *([(Agreement.RAISED_PARTS, one, raised_parts) for one in own] if raised_parts else []),
+        *((Agreement.RAISED_PARTS, one, raised_parts) for one in own if raised_parts),
     )
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
     if kind is Agreement.OFF:
@@ -203,26 +203,21 @@ def _sum_beside(
     study: Study, claim: RowClaim, total: Printed, halves: Sequence[Printed], what: str
 ) -> Finding:
     """A printed total beside the sum of its durations and of half of some further ones."""
-    parts = [*claim.durations, *halves]
-    share = [Fraction(1)] * len(claim.durations) + [Fraction(1, 2)] * len(halves)
-    plain = sum((d.fraction * s for d, s in zip(parts, share, strict=True)), Fraction(0))
+    parts = [(d, Fraction(1)) for d in claim.durations] + [(d, Fraction(1, 2)) for d in halves]
+    plain = sum((d.fraction * share for d, share in parts), Fraction(0))
     return compared(
         "TG101",
         claim,
         total,
-        _sum([_share(d.interval, s) for d, s in zip(parts, share, strict=True)]),
-        _sum([_share(d.truncated, s) for d, s in zip(parts, share, strict=True)]),
+        _sum((d.interval, share) for d, share in parts),
+        _sum((d.truncated, share) for d, share in parts),
         what,
         study.time_unit,
         f"{SUM} {claim.id}",
         shown(plain) if halves else str(sum(d.decimal for d in claim.durations)),
-        coarser=total.unit > max(d.unit for d in parts),
-        raised_parts=_sum([_share(raised(d), s) for d, s in zip(parts, share, strict=True)]),
+        coarser=total.unit > max(d.unit for d, _ in parts),
+        raised_parts=_sum((raised(d), share) for d, share in parts),
     )
-
-
-def _share(interval: Interval, share: Fraction) -> Interval:
-    return Interval(interval.lower * share, interval.upper * share)
 
 
 def _lengths(study: Study) -> Iterator[Finding]:
@@ -269,9 +264,8 @@ def _maxima(study: Study) -> Iterator[Finding]:
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {span(longest)}")
         message = f"The printed longest durations follow from the {len(rows)} rows."
         if wrong:
-            message = "The printed longest durations do not follow from the rows: " + "; ".join(
-                wrong
-            )
+            listed = "; ".join(wrong)
+            message = f"The printed longest durations do not follow from the rows: {listed}"
         yield finding(
             "TG102",
             claim,
@@ -283,24 +277,18 @@ def _maxima(study: Study) -> Iterator[Finding]:
         )
 
 
-def _significant(number: Printed) -> str:
-    return number.text.lstrip("+-").replace(".", "").lstrip("0")
-
-
 def _repeated_digits(study: Study) -> Iterator[Finding]:
     """Way-point digits that stand in another printed column too."""
     case = study.case
     statement = case.statement()
     for j, label in zip(statement.joints, statement.labels, strict=False):
         entries = [row[j] for row in statement.waypoints.points]
-        for group in _column_groups([*case.columns, *case.cartesian]):
-            where, values = group
-            # 4: digits that a number needs before its repetition is worth a word.
+        for where, values in _column_groups([*case.columns, *case.cartesian]):
+            others = {v.text.lstrip("+-") for v in values}
+            same = [w for w in entries if w.text.lstrip("+-") in others]
+            # Fewer than four digits repeat by chance.
             repeated = [
-                w.text
-                for w in entries
-                if len(_significant(w)) >= 4
-                and any(v.text.lstrip("+-") == w.text.lstrip("+-") for v in values)
+                w.text for w in same if len(w.text.lstrip("+-").replace(".", "").lstrip("0")) >= 4
             ]
             if len(repeated) >= 2:
                 yield finding(

@@ -8,8 +8,8 @@ from itertools import product
 from math import sqrt
 
 from ....problem import Printed
-from ....problem.cases import Cartesian, Statement, StatementClaim
-from ....problem.robots import Chain, Equation, EquationCheck, check_equation
+from ....problem.cases import Cartesian, StatementClaim
+from ....problem.robots import Chain, Equation, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import meet
 from ..study import Study
@@ -58,7 +58,14 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     if own is None:
         return _finding(claim, "not printed", [f"No angles of joint {claim.joint} are printed."])
     if claim.joint is not None and statement.unit("position") is None:
-        return _in_other_units(claim, statement, own)
+        listed = ", ".join(dict.fromkeys(statement.units.position or ()))
+        said = [
+            f"Joints are printed in different units ({listed}), so it cannot be said which of them "
+            "varies more.",
+            f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed "
+            "unit).",
+        ]
+        return _finding(claim, "other units", said, own=own)
     shown = " and ".join(
         f"{_middle(least, most):.2f} of joint {label}" for label, (least, most) in ranges.items()
     )
@@ -83,20 +90,6 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     elif not missing and ranges and all(most <= own[0] for _, most in ranges.values()):
         verdict = ClaimVerdict.SUPPORTED
     return _finding(claim, kind, [*said, *aside], verdict, own)
-
-
-def _in_other_units(
-    claim: StatementClaim, statement: Statement, own: tuple[Fraction, Fraction]
-) -> Finding:
-    """Nothing decided: joints in different units have no common measure of how much they vary."""
-    units = statement.units.position
-    listed = ", ".join(dict.fromkeys(units)) if isinstance(units, tuple) else str(units)
-    said = [
-        f"Joints are printed in different units ({listed}), so it cannot be said which of them "
-        "varies more.",
-        f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed unit).",
-    ]
-    return _finding(claim, "other units", said, own=own)
 
 
 def _range(numbers: list[Printed]) -> tuple[Fraction, Fraction]:
@@ -124,7 +117,9 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     names = f"{upper.label or upper.id} lies {{}} {upper.unit} beside {lower.label or lower.id}"
     height = float(upper.values[2].fraction - lower.values[2].fraction)
     said = [f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."]
-    if _meets(upper, lower) and rise.lower > floor.upper:
+    plane = zip(upper.values[:2], lower.values[:2], strict=True)
+    same = all(meet(a.interval, b.interval) for a, b in plane)
+    if same and rise.lower > floor.upper:
         return _finding(claim, "beside and above", said, ClaimVerdict.SUPPORTED)
     least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
     if least[0] < beside[0]:
@@ -152,11 +147,6 @@ def _finding(
         basis=Basis.DIGITS,
         computed=None if own is None else f"{_middle(*own):.2f} in the printed unit",
     )
-
-
-def _meets(one: Cartesian, other: Cartesian) -> bool:
-    pairs = zip(one.values[:2], other.values[:2], strict=True)
-    return all(meet(a.interval, b.interval) for a, b in pairs)
 
 
 def _beside(
@@ -203,7 +193,9 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
         if found.holds:
             held.append(_name(equation))
         elif equation.mended is not None and check_equation(chain, equation.mended).holds:
-            mended.append(f"{_name(equation)} {_partly(found)}with {equation.mend}")
+            # How often it holds as it is, where it does at some poses.
+            partly = f"({found.share:.0%} of the poses as printed) " if found.share else ""
+            mended.append(f"{_name(equation)} {partly}with {equation.mend}")
         else:
             apart.append(_name(equation))
     listed = f": {', '.join(held)}" if held else ""
@@ -231,8 +223,3 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
 
 def _name(equation: Equation) -> str:
     return equation.where.removeprefix("equation ")
-
-
-def _partly(found: EquationCheck) -> str:
-    """How often it holds as it is, where it does at some poses."""
-    return f"({found.share:.0%} of the poses as printed) " if found.share else ""

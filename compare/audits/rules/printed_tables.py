@@ -61,7 +61,7 @@ def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
         if first.algorithm == second.algorithm or not rows[0] or len(rows[0]) != len(rows[1]):
             continue
         printed = [[_all_digits(claim) for claim in table] for table in rows]
-        # 4: numbers that a table needs before two tables alike are worth a word.
+        # Fewer than four numbers may be alike by chance.
         if sum(len(row) for row in printed[0]) >= 4 and printed[0] == printed[1]:
             yield first, second
 
@@ -181,11 +181,11 @@ def _kept_apart(study: Study, claim: TotalTimeClaim, other: _Timed) -> bool:
     curve, state and objective where it names none.
     """
     case = study.case
-    only = case.problems[0].id
+    only, keys = case.problems[0].id, ("other_curve", "state", "objective")
     pairs = [
         (claim.problem or only, other.problem or only),
         (_whose(study, claim), _whose(study, other)),
-        *((getattr(claim, key), getattr(other, key)) for key in _MOTION),
+        *((getattr(claim, key), getattr(other, key)) for key in keys),
     ]
     repeats = claim.of == other.id
     if any(a != b and not (repeats and a is None) for a, b in pairs):
@@ -201,10 +201,6 @@ def _kept_apart(study: Study, claim: TotalTimeClaim, other: _Timed) -> bool:
         for c in case.claims
         if isinstance(c, ImprovementClaim)
     )
-
-
-_MOTION = ("other_curve", "state", "objective")
-"""What tells the motions of two totals apart, beside problem, joint and method."""
 
 
 def printed_alike(
@@ -239,19 +235,10 @@ def printed_alike(
 
 
 def total_allowed(study: Study, claim: AnyClaim) -> Interval:
-    """What the digits of a total allow, rounded or cut off.
+    """What the digits of a total allow, rounded or cut off, in the unit of time of the file.
 
     A printed total may be the sum of printed digits, so what its parts allow is allowed too.
 
-    Parameters
-    ----------
-    claim : AnyClaim
-        States a total, or durations.
-
-    Returns
-    -------
-    Interval
-        In the unit of time of the file.
     """
     printed = printed_total(claim)
     parts = study.case.printed_durations(claim)
@@ -276,18 +263,6 @@ def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
     return f"{study.total_digits(claim)}{summed}", allowed
 
 
-def _rival(claim: TotalTimeClaim) -> Finding:
-    """That a named method's total has nothing else in print to agree with."""
-    return finding(
-        "TG105",
-        claim,
-        "printed once",
-        "This total of a named method is printed only once, so nothing printed can contradict it.",
-        basis=Basis.DIGITS,
-        printed=str(claim.value),
-    )
-
-
 def _same_total(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not isinstance(claim, TotalTimeClaim):
@@ -298,7 +273,15 @@ def _same_total(study: Study) -> Iterator[Finding]:
         others = agreeing or [c for c in found if end_blends(study, c) is not None]
         if not others:
             if claim.algorithm is not None and not found:
-                yield _rival(claim)
+                yield finding(
+                    "TG105",
+                    claim,
+                    "printed once",
+                    "This total of a named method is printed only once, so nothing printed can "
+                    "contradict it.",
+                    basis=Basis.DIGITS,
+                    printed=str(claim.value),
+                )
             continue
         other = others[0]
         shown, _ = _total_shown(study, other)

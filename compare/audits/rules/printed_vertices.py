@@ -134,7 +134,7 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
     widest = f", which reaches at most {most} to either side of the value"
     widest = "" if apart else widest + " computed from the digits"
     if beyond:
-        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "outside"
+        verdict, kind = ClaimVerdict.REFUTED, "outside"
         shown = "; ".join(
             f"V{v.index} of joint {v.joint} printed {v.printed}, allowed "
             f"{ranged(float(v.allowed_cut.lower), float(v.allowed_cut.upper), '.6f')}"
@@ -146,25 +146,26 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
             f"rounded or cut off: {shown}."
         )
     elif outside:
-        verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.WARNING, "cut off"
+        verdict, kind = ClaimVerdict.SUPPORTED, "cut off"
         names = ", ".join(f"V{v.index} of joint {v.joint}" for v in outside[:5])
         message = (
             f"{len(outside)} of {len(found)} printed control vertices ({names}) follow from the "
             "printed way-points only if digits are cut off instead of rounded."
         )
     else:
-        verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.INFO, "inside"
+        verdict, kind = ClaimVerdict.SUPPORTED, "inside"
         message = (
             f"All {len(found)} printed control vertices lie inside the interval that the rounding "
             f"of the printed way-points allows on the uniform cubic B-spline{widest}."
         )
+    weight = {"severity": Severity.WARNING} if kind == "cut off" else {}
     return finding(
         "TG205",
         claim,
         kind,
         message,
-        severity=severity,
         verdict=verdict,
         basis=Basis.DIGITS,
         computed=f"{len(found) - len(outside)} of {len(found)} inside",
+        **weight,
     )

@@ -23,6 +23,7 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
+from ..amounts import percent, seconds
 from ..named_profiles import (
     ALGORITHM,
     NOT_SHORTEST,
@@ -48,13 +49,12 @@ from ..study import Study
 from .one_way import judge_one_way
 from .rule_group import Explained, rule_group
 
-_PATHS = {
-    False: "each segment as long as its slowest joint needs",
-    True: "all joints on a straight line in each segment",
-}
-"""How the joints go together, by whether they stay on a straight line."""
 _Profiled = TotalTimeClaim | PhasesClaim
-_Judge = Callable[["_Asked"], Finding]
+
+
+def total_time(motion: ProfileMotion) -> list[float]:
+    """The total of a motion, as numbers of it are given."""
+    return [motion.total_time]
 
 
 @dataclass(frozen=True)
@@ -91,6 +91,10 @@ class _Asked:
         return NumberRange.of(self.every(profile), number, gradual)
 
     @property
+    def totals(self) -> NumberRange:
+        return self.range(total_time)
+
+    @property
     def called(self) -> str:
         return profile_called([self.profile])
 
@@ -115,7 +119,7 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
     yield from judge_one_way(study)
     for claim in study.claims:
         of: _Profiled
-        judge: _Judge
+        judge: Callable[[_Asked], Finding]
         if isinstance(claim, TotalTimeClaim) and claim.profile is not None:
             of, judge = claim, _total_beside
         elif isinstance(claim, PhasesClaim):
@@ -201,21 +205,18 @@ def _impossible(asked: _Asked) -> Finding:
     turned = _Asked(other, PrintedRow(row.study, other, row.pair))
     said = ""
     if turned.every():
-        totals = turned.range(lambda motion: [motion.total_time])
-        number = row.time(claim.value)
-        if totals.meets(number.lower, number.cut_off().upper):
-            said = f" With {text} {unit} it takes {totals.plain:.6g} s, which fits."
+        totals = turned.totals
+        if totals.meets(_ends(row.time(claim.value))):
+            said = f" With {text} {unit} it takes {seconds(totals.plain)}, which fits."
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT,
         "no profile",
+        f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, at the "
+        "printed numbers or at the ends of what their digits leave: a phase would take less than "
+        f"0 s.{said}",
         printed=f"{claim.value} {row.study.time_unit}",
         computed="no profile",
-        sentences=(
-            f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, at "
-            "the printed numbers or at the ends of what their digits leave: a phase would take "
-            f"less than 0 s.{said}",
-        ),
     )
 
 
@@ -229,14 +230,13 @@ def _total_beside(asked: _Asked) -> Finding:
     # The closed forms grow with the way and fall with the limits: two of them enclose all others.
     enclosed = asked.resting and asked.profile in RESTING
     if enclosed:
-        how = f"from rest to rest, {_PATHS[straight]},"
+        joints = "each segment as long as its slowest joint needs"
+        joints = "all joints on a straight line in each segment" if straight else joints
+        how = f"from rest to rest, {joints},"
         plain, fits = _fitted(asked, number, straight)
         if plain == 0.0 < number.value:
-            verdict, kind, said = (
-                ClaimVerdict.NOT_CHECKABLE,
-                "at rest",
-                "cannot be compared, because no joint moves",
-            )
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "at rest"
+            said = "cannot be compared, because no joint moves"
         elif plain == inf:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
             said = "cannot be compared, because a joint with limit 0 moves"
@@ -245,43 +245,39 @@ def _total_beside(asked: _Asked) -> Finding:
             said = 'fits if the joints stay on a straight line: add path = "straight" if they do'
     else:
         how = asked.between
-        totals = asked.range(lambda motion: [motion.total_time])
-        plain, fits = totals.plain, totals.meets(number.lower, number.cut_off().upper)
+        totals = asked.totals
+        plain, fits = totals.plain, totals.meets(_ends(number))
         notes = _notes(asked, totals)
-        if not fits and totals.spans(number.lower, number.cut_off().upper):
+        if not fits and totals.spans(_ends(number)):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
             said = "lies within its jump"
     if verdict is ClaimVerdict.SUPPORTED and not fits:
         verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
-        away = f"{100 * abs(number.value / plain - 1):.2f} % " if plain else ""
+        away = f"{percent(abs(number.value / plain - 1), '.2f')} " if plain else ""
         said = f"is {away}{'shorter' if number.value < plain else 'longer'}"
     return _found(
         asked,
         verdict,
         kind,
-        enclosed,
-        printed=f"{claim.value} {unit}",
-        computed=f"{plain:.6g} s",
-        sentences=(
-            f"The {asked.called} {how} takes {plain:.6g} s; the printed {claim.value} {unit} "
-            f"{said}.",
-            *notes,
-        ),
-    )
-
-
-def _found(
-    asked: _Asked, verdict: ClaimVerdict, kind: str, enclosed: bool = False, **facts: Any
-) -> Finding:
-    """A finding that speaks of all that rounds to the digits: enclosed, or tried at their ends."""
-    return asked.row.finding(
-        "TG304",
-        verdict=verdict,
+        f"The {asked.called} {how} takes {seconds(plain)}; the printed {claim.value} {unit} "
+        f"{said}.",
+        *notes,
+        # Of all that rounds to the digits: enclosed, or tried at their ends.
         basis=Basis.CHECK if enclosed else Basis.COMPUTED,
-        claim=asked.claim.id,
-        kind=kind,
-        **facts,
+        printed=f"{claim.value} {unit}",
+        computed=seconds(plain),
     )
+
+
+def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, *said: str, **facts: Any) -> Finding:
+    given = {"basis": Basis.COMPUTED, "claim": asked.claim.id, "verdict": verdict} | facts
+    return asked.row.finding("TG304", kind, *said, **given)
+
+
+def _ends(number: Measured) -> tuple[float, float]:
+    """Ends of what a printed number stands for, its digits rounded or cut off."""
+    cut = number.cut_off()
+    return cut.lower, cut.upper
 
 
 def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
@@ -290,7 +286,8 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
     if totals.jump is not None:
         low, high = totals.jump
         notes.append(
-            f"Within the rounding of the printed digits it jumps from {low:.6g} s to {high:.6g} s."
+            f"Within the rounding of the printed digits it jumps from {seconds(low)} to "
+            f"{seconds(high)}."
         )
     every = asked.every()
     if every and every[0].starts_outside:
@@ -299,10 +296,10 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             "shortest from there."
         )
     if asked.profile == ALGORITHM:
-        best = asked.range(lambda motion: [motion.total_time], "s-curve")
+        best = asked.range(total_time, "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
-        notes.append(f"The shortest s-curve profile takes {best.plain:.6g} s{beside}.")
+        notes.append(f"The shortest s-curve profile takes {seconds(best.plain)}{beside}.")
     return tuple(notes)
 
 
@@ -321,8 +318,7 @@ def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, boo
         high = total(most, Digits.TIGHTEST) * (1.0 + FEW_ROUNDINGS)
     except CaseError:
         high = inf
-    cut = number.cut_off()
-    return plain, meet((cut.lower, cut.upper), (low, high))
+    return plain, meet(_ends(number), (low, high))
 
 
 def _phases_beside(asked: _Asked) -> Finding:
@@ -333,38 +329,30 @@ def _phases_beside(asked: _Asked) -> Finding:
         asked.range(lambda motion, k=k: [motion.parts[k]])  # type: ignore[misc]
         for k in range(len(printed))
     ]
-    sizes = [asked.row.time(one) for one in printed]
-    fits = all(
-        one.meets(size.lower, size.cut_off().upper) for one, size in zip(found, sizes, strict=True)
-    )
-    totals = asked.range(lambda motion: [motion.total_time])
+    sizes = [_ends(asked.row.time(one)) for one in printed]
+    fits = all(one.meets(size) for one, size in zip(found, sizes, strict=True))
+    totals = asked.totals
     shown = ", ".join(f"{one.plain:.5g}" for one in found)
     digits = ", ".join(map(str, printed))
     kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
     how = "fit" if fits else "do not fit"
     if kind == "other phases" and not all(one.in_order for one in asked.every()):
-        ends = [one.cut_off() for one in sizes[:3]]
-        if totals.meets(sum(one.lower for one in ends), sum(one.upper for one in ends)):
+        lower, upper = map(sum, zip(*sizes[:3], strict=True))
+        if totals.meets((lower, upper)):
             kind = "more phases"
             how += "; the profile has more phases, which can be combined in more than one way"
-    verdict = {
-        "fits": ClaimVerdict.SUPPORTED,
-        "other phases": ClaimVerdict.INCONSISTENT,
-        "jump": ClaimVerdict.NOT_CHECKABLE,
-        "more phases": ClaimVerdict.NOT_CHECKABLE,
-    }[kind]
+    decided = {"fits": ClaimVerdict.SUPPORTED, "other phases": ClaimVerdict.INCONSISTENT}
+    verdict = decided.get(kind, ClaimVerdict.NOT_CHECKABLE)
     ramps = " and ramps" if claim.ramps else ""
     return _found(
         asked,
         verdict,
         kind,
+        f"The {asked.called} {asked.between} takes {seconds(totals.plain)} in phases{ramps} of "
+        f"{shown} s; the printed {digits} {unit} {how}.",
+        *_notes(asked, totals),
         printed=f"{digits} {unit}",
         computed=f"{shown} s",
-        sentences=(
-            f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases"
-            f"{ramps} of {shown} s; the printed {digits} {unit} {how}.",
-            *_notes(asked, totals),
-        ),
     )
 
 
@@ -391,11 +379,9 @@ def _numbers_beside(asked: _Asked) -> Finding:
         size = row.measured(number, claim.derivative, joint)
         values = partial(numbers_of, row, claim, [joints.index(one) for one in own])
         found = asked.range(values, gradual=gradual)
-        cut = size.cut_off()
-        fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
+        fits = found.meets(_ends(size))
         wrong = wrong or not fits
-        shown = row.in_units(claim.derivative, found.plain, joint)
-        plain.append(f"{shown:.6g} {row.unit(claim.derivative, joint)}")
+        plain.append(row.shown(claim.derivative, found.plain, joint))
         whose = "all joints" if joint is None else f"joint {joint}"
         said.append(
             f"the {size_word}{claim.derivative} of {whose}{where} is {plain[-1]}; the printed "
@@ -407,9 +393,9 @@ def _numbers_beside(asked: _Asked) -> Finding:
         asked,
         ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
         "off" if wrong else "fits",
+        f"For the {asked.called} {asked.between}: {'; '.join(said)}.",
         printed=", ".join(map(str, claim.printed)),
         computed="; ".join(plain),
-        sentences=(f"For the {asked.called} {asked.between}: {'; '.join(said)}.",),
     )
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....heuristics import JointRuns, Run
+from ....heuristics import JointRuns
 from ....problem import Array
 from ....problem.cases import (
     AnyClaim,
@@ -30,8 +31,9 @@ from ...gaps import (
     share_of_pairs,
     spread,
 )
+from ..amounts import percent, seconds
 from ..kept_replays import Replays
-from ..printed_row import rows_under
+from ..printed_row import PrintedRow, rows_under
 from ..replay_settings import LISTED
 from ..stated import other_objective
 from ..study import Pair, Study
@@ -82,24 +84,17 @@ def _found(
     study: Study, rule: str, claim: AnyClaim, pair: Pair, printed: str | None = None
 ) -> Callable[..., Finding]:
     """A finding of a rule about replays of a claim's algorithms, in want of what it says."""
-    return partial(
-        Finding,
-        rule=rule,
-        basis=Basis.REPLAY,
-        decides=False,
-        claim=claim.id,
-        problem=pair.problem,
-        reading=pair.reading,
-        printed=printed,
-    )
+    facts: dict[str, Any] = {"basis": Basis.REPLAY, "decides": False, "printed": printed}
+    return partial(PrintedRow(study, claim, pair).finding, rule, **facts)
+
+
+def _pairs(study: Study, claim: AnyClaim) -> list[Pair]:
+    """The problems that a claim may speak about, under the main reading."""
+    return [pair for pair in study.main_pairs if claim.problem in (None, pair.problem)]
 
 
 def _totals(runs: Replays) -> Array:
     return np.array([r.reported_time for r in runs])
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.3g} %"
 
 
 def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
@@ -108,9 +103,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
     if None in names or claim.percent is None:
         return
     least = claim.percent.lower / 100
-    for pair in study.main_pairs:
-        if claim.problem not in (None, pair.problem):
-            continue
+    for pair in _pairs(study, claim):
         spreads = [study.spread_runs(str(name), pair) for name in names]
         if not spreads[0] or not spreads[1]:
             continue
@@ -132,28 +125,26 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         said = [
             f"In {study.options.seeds} independent runs each, {one} reaches {spread(slower)} and "
             f"{other} reaches {spread(faster)} under the listed choices.",
-            f"One run of {other} is at least {100 * least:.4g} % shorter than one of {one} "
-            f"with probability {_percent(shows)} ({sure}). For two runs of {one}, this "
-            f"probability "
-            f"is {_percent(luck)}.",
+            f"One run of {other} is at least {percent(least, '.4g')} shorter than one of {one} "
+            f"with probability {percent(shows)} ({sure}). For two runs of {one}, this probability "
+            f"is {percent(luck)}.",
         ]
         if len(each) > 1:
             said.append(
                 f"With everything that the text leaves open varied together ({len(totals[0])} and "
-                f"{len(totals[1])} settings), the probability is at most {_percent(each[most])}: "
+                f"{len(totals[1])} settings), the probability is at most {percent(each[most])}: "
                 f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
         found = _found(study, "TG401", claim, pair, f"{claim.percent} %")
-        computed = f"median {100 * median:.3g} %"
-        yield found(kind="runs", sentences=tuple(said), computed=computed)
+        yield found("runs", *said, computed=f"median {percent(median)}")
 
 
 def interval_words(low: float, high: float) -> str:
     """A 95 % interval of a probability, or that there is none."""
     if np.isnan(low) or np.isnan(high):
         return "too few runs with an answer for an interval"
-    return f"95 % interval {_percent(low)} to {_percent(high)}"
+    return f"95 % interval {percent(low)} to {percent(high)}"
 
 
 def _at(name: str, setting: str) -> str:
@@ -164,9 +155,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
     """Two algorithms that a sentence compares: totals, and how soon a run has settled."""
     own, other = study.called(str(claim.algorithm)), study.called(against)
     seeds = study.options.seeds
-    for pair in study.main_pairs:
-        if claim.problem not in (None, pair.problem):
-            continue
+    for pair in _pairs(study, claim):
         each = (str(claim.algorithm), against)
         runs = {study.called(one): study.runs(one, pair) for one in each}
         if not all(runs.values()):
@@ -175,20 +164,18 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
         shorter = share_of_pairs(totals[other], totals[own], 0.0)
         low, high = share_interval(totals[other], totals[own], 0.0)
         settled = "; ".join(
-            f"{name} stays within {100 * tolerance:g} % of its final total from iteration "
+            f"{name} stays within {percent(tolerance, 'g')} of its final total from iteration "
             f"{int(np.median(_settled(found, tolerance)))} onwards (median)"
             for tolerance in _TOLERANCES
             for name, found in runs.items()
         )
         yield _found(study, "TG401", claim, pair)(
-            computed=f"shorter in {_percent(shorter)} of the pairs",
-            kind="runs",
-            sentences=(
-                f"In {seeds} independent runs each under the listed choices, {own} reaches "
-                f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
-                f"of {own} is no longer than one of {other} with probability {_percent(shorter)} "
-                f"({interval_words(low, high)}): {settled}.",
-            ),
+            "runs",
+            f"In {seeds} independent runs each under the listed choices, {own} reaches "
+            f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
+            f"of {own} is no longer than one of {other} with probability {percent(shorter)} "
+            f"({interval_words(low, high)}): {settled}.",
+            computed=f"shorter in {percent(shorter)} of the pairs",
         )
 
 
@@ -206,28 +193,24 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         found = _found(study, "TG402", claim, pair, shown)
         runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
-            why = study.unreplayed(claim.algorithm, pair) or ""
-            yield found(kind="not replayed", sentences=(why,))
+            yield found("not replayed", study.unreplayed(claim.algorithm, pair) or "")
             continue
         minimised = other_objective(study.case, claim)
         if minimised is not None:
-            said = (
-                f"A replay minimises time alone, but {shown} was minimised for {minimised}, so "
-                "the two "
-                "are not compared."
+            yield found(
+                "other objective",
+                f"A replay minimises time alone, but {shown} was minimised for {minimised}, so the "
+                "two are not compared.",
             )
-            yield found(kind="other objective", sentences=(said,))
             continue
         spreads = {name: spread(_totals(one)) for name, one in runs.items()}
         listed = spreads[LISTED]
         yield found(
+            "runs",
+            f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
+            f"{listed} in {listed.runs} independent runs; the printed total is {shown}.",
+            *_typical(spreads, low, high),
             computed=f"{ranged(listed.lowest, listed.highest, '.6f')} s",
-            kind="runs",
-            sentences=(
-                f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
-                f"{listed} in {listed.runs} independent runs; the printed total is {shown}.",
-                *_typical(spreads, low, high),
-            ),
         )
 
 
@@ -241,9 +224,8 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
     yield (
         f"With everything that the text leaves open varied together ({len(medians)} settings), "
-        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; the "
-        f"nearest "
-        f"to the printed total is {medians[nearest]:.4f} s, with {nearest}."
+        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; the nearest "
+        f"to the printed total is {seconds(medians[nearest], '.4f')}, with {nearest}."
     )
     if inside:
         return
@@ -259,27 +241,21 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
         )
 
 
-def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:
-    return list(chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs))
-
-
 def _settled(runs: Replays, tolerance: float) -> NDArray[np.intp]:
     """The iteration from which each run stays within a share of its final value."""
-    return np.array([settled_at(r.trace, tolerance * r.trace[-1]) for r in _traces(runs)])
+    each = chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs)
+    return np.array([settled_at(r.trace, tolerance * r.trace[-1]) for r in each])
 
 
 def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
     """How many runs settle in time, under every setting, and how much the tolerance changes it."""
     if claim.algorithm is None:
         return
-    for pair in study.main_pairs:
-        if claim.problem not in (None, pair.problem):
-            continue
+    for pair in _pairs(study, claim):
         found = _found(study, "TG403", claim, pair, f"{claim.iterations} iterations")
         runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
-            why = study.unreplayed(claim.algorithm, pair) or ""
-            yield found(kind="not replayed", sentences=(why,))
+            yield found("not replayed", study.unreplayed(claim.algorithm, pair) or "")
             continue
         parts: list[str] = []
         spans: list[str] = []
@@ -288,23 +264,21 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
                 name: float((_settled(one, tolerance) <= claim.iterations.value).mean())
                 for name, one in runs.items()
             }
-            share = f"{_percent(within[LISTED])}{'' if parts else ' of the runs'}"
-            parts.append(f"{share} lie within {100 * tolerance:g} %")
-            spans.append(f"{_percent(min(within.values()))} to {_percent(max(within.values()))}")
-        varied = (
-            f"Over {len(runs)} settings of what the text leaves open these shares "
-            f"range from {' and from '.join(spans)}."
-            if len(runs) > 1
-            else ""
-        )
+            share = f"{percent(within[LISTED])}{'' if parts else ' of the runs'}"
+            parts.append(f"{share} lie within {percent(tolerance, 'g')}")
+            spans.append(f"{percent(min(within.values()))} to {percent(max(within.values()))}")
+        varied = ""
+        if len(runs) > 1:
+            varied = (
+                f"Over {len(runs)} settings of what the text leaves open these shares "
+                f"range from {' and from '.join(spans)}."
+            )
         settled = _settled(runs[LISTED], SETTLED)
         yield found(
+            "runs",
+            f"After {claim.iterations} iterations {parts[0]} of their final value, and "
+            f"{parts[1]}, counted over {settled.size} runs under the listed choices.",
+            varied,
+            "The text names no tolerance.",
             computed=f"median {np.median(settled):.0f} iterations",
-            kind="runs",
-            sentences=(
-                f"After {claim.iterations} iterations {parts[0]} of their final value, and "
-                f"{parts[1]}, counted over {settled.size} runs under the listed choices.",
-                varied,
-                "The text names no tolerance.",
-            ),
         )

@@ -10,6 +10,7 @@ import numpy as np
 from ....problem import CaseError, Problem
 from ....problem.cases import AnyClaim, Digits, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..amounts import seconds
 from ..fixed_ratios import off_ratios
 from ..printed_row import rows_under
 from ..roots import OPTIMAL
@@ -52,40 +53,34 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
     stretching time by c = V_one/V_other divides every velocity by c: optimum times limit is a
     constant.
     """
-    if one.limits.uneven or other.limits.uneven:
+    if any(problem.limits.uneven for problem in (one, other)):
         return None
+    a, b = one.limits.velocity, other.limits.velocity
+    finite = np.isfinite(a)
     same = (
         one.curve == other.curve
-        and _same_ratios(one, other)
         and one.curve.homogeneous
         and np.array_equal(one.waypoints, other.waypoints)
-        and not (one.duration_lower > 0).any()
-        and not np.isfinite(one.duration_upper).any()
-        and not (other.duration_lower > 0).any()
-        and not np.isfinite(other.duration_upper).any()
-        and not one.limits.limits_position
-        and not other.limits.limits_position
+        and np.array_equal(np.array(one.shares), np.array(other.shares))
+        and np.array_equal(finite, np.isfinite(b))
     )
-    a, b = one.limits, other.limits
-    only_velocity = all(np.isinf(x).all() for x in (a.acceleration, a.jerk, b.acceleration, b.jerk))
-    if (
-        not same
-        or not only_velocity
-        or not np.array_equal(np.isfinite(a.velocity), np.isfinite(b.velocity))
-    ):
+    if not same or not (_only_velocity(one) and _only_velocity(other)):
         return None
-    finite = np.isfinite(a.velocity)
-    if not finite.any() or (b.velocity[finite] == 0).any():
+    if not finite.any() or (b[finite] == 0).any():
         return None
-    factors = a.velocity[finite] / b.velocity[finite]
+    factors = a[finite] / b[finite]
     return float(factors[0]) if np.ptp(factors) <= FEW_ROUNDINGS * factors[0] else None
 
 
-def _same_ratios(one: Problem, other: Problem) -> bool:
-    """Whether neither question fixes the ratios of its durations, or both fix the same."""
-    if one.shares is None or other.shares is None:
-        return one.shares is other.shares
-    return np.array_equal(one.shares, other.shares)
+def _only_velocity(problem: Problem) -> bool:
+    """Whether nothing but the velocity is limited."""
+    limits = problem.limits
+    return bool(
+        np.isinf([limits.acceleration, limits.jerk]).all()
+        and not limits.limits_position
+        and not (problem.duration_lower > 0).any()
+        and not np.isfinite(problem.duration_upper).any()
+    )
 
 
 def _stretched(
@@ -114,8 +109,8 @@ def _stretched(
     if low <= reachable * (1 + ROUNDING):
         return
     summed = float(durations.sum())
-    exact = f"{summed * factor:.6g} s"
-    allowed = f"{reachable:.6g} s"
+    exact = seconds(summed * factor)
+    allowed = seconds(reachable)
     if allowed != exact:
         exact += (
             f", or {allowed} with the rounding of way-points, limits and durations taken into "
@@ -128,7 +123,7 @@ def _stretched(
         "not both shortest",
         "With velocity limits only, the shortest time multiplied by the limit is constant, so "
         "the two printed results cannot both be the shortest.",
-        f"The durations in {places[0]} sum to {summed:.6g} s.",
+        f"The durations in {places[0]} sum to {seconds(summed)}.",
         f"Multiplied by {factor:.6g}, the ratio of the two limits, that is {exact}.",
         f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is "
         "longer.",
@@ -138,7 +133,7 @@ def _stretched(
         problem=fast.problem,
         reading=reading,
         printed=shown,
-        computed=f"{reachable:.6g} s",
+        computed=seconds(reachable),
         follows=tuple(f"{OPTIMAL} {s.id}" for s in statements if target.id in s.of),
     )
     yield beside

@@ -10,7 +10,7 @@ from support.papers.spoiled import spoiled
 from support.studies import EVERY, audited_alone
 from trajgap.compare.audits import CaseAudit, audit
 from trajgap.compare.audits.draft import advise
-from trajgap.compare.audits.reworded import edited
+from trajgap.compare.audits.revision import edited
 from trajgap.compare.documents import Advice, ClaimVerdict, Urgency, Why
 from trajgap.compare.pages.claims import advised, against
 from trajgap.problem import Case, Verdict, check, parse_case

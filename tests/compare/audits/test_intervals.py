@@ -11,8 +11,7 @@ from support.made_up import paper, row, sentence
 from trajgap.compare import audit
 from trajgap.compare.audits import intervals
 from trajgap.compare.audits.case_audit import CaseAudit
-from trajgap.compare.audits.intervals import Intervals
-from trajgap.compare.audits.options import AuditOptions
+from trajgap.compare.audits.intervals import AuditOptions, Intervals
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.blocks import Prose

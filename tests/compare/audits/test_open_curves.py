@@ -11,7 +11,7 @@ from support.made_up import claim, paper, peak, readings, row, sentence, total
 from trajgap.compare import ClaimVerdict, write_report
 from trajgap.compare.audits import CaseAudit
 from trajgap.compare.audits.case_audit import AuditReport
-from trajgap.compare.audits.total_bound import excludes_total
+from trajgap.compare.audits.rounding import excludes_total
 from trajgap.compare.pages.readings import _determined
 from trajgap.problem import Limits, Problem, quintic_spline
 

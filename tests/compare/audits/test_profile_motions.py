@@ -78,7 +78,7 @@ def test_values_on_both_sides_of_a_jump_are_told_apart() -> None:
         (0.5, 0.6, False, False),
         (2.5, 2.6, False, False),
     ):
-        assert (found.meets(low, high), found.spans(low, high)) == (meets, spans)
+        assert (found.meets((low, high)), found.spans((low, high))) == (meets, spans)
 
 
 FROM_SPEED = {"family": "polynomials", "degrees": [5]}

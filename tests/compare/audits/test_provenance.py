@@ -10,7 +10,7 @@ from support.findings import made_finding
 from support.made_up import gain, paper, row
 from support.studies import audited, source
 from trajgap.compare.audits import provenance as proving
-from trajgap.compare.audits.judging import judge
+from trajgap.compare.audits.causes import judge
 from trajgap.compare.audits.provenance import certificate_files, commit, provenance, today
 from trajgap.compare.audits.stated import claim_text, digits_of, place, stated_claims, stated_source
 from trajgap.compare.audits.study import Study

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.documents import assert_reasons, assert_valid, plain
-from support.findings import study_of
+from support.findings import study_of, with_waterfalls
 from support.made_up import TWO_UNITS, one_joint, paper, readings, row
 from support.studies import shipped
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
@@ -83,7 +83,7 @@ def summed(study: Study, claims: dict[str, str]) -> CaseAudit:
             ("z", Scope.NO, lost),
         )
     )
-    return CaseAudit(study.case, study, (), judged, made_waterfalls=waterfalls)
+    return with_waterfalls(CaseAudit(study.case, study, (), judged), waterfalls)
 
 
 @cache

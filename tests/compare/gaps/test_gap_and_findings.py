@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.findings import made_finding as finding
-from trajgap.compare.audits.judging import judge, weigh
+from trajgap.compare.audits.causes import judge, weigh
 from trajgap.compare.documents import ClaimVerdict, GapKind, Reference, Scope, Severity
 from trajgap.compare.gaps.optimality_gap import gap
 from trajgap.compare.gaps.statistics import settled_at, share_of_luck, share_of_pairs, spread

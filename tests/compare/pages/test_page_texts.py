@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import radians
 
 import pytest
-from support.findings import study_of
+from support.findings import study_of, with_waterfalls
 from support.made_up import paper, row
 from support.page_tree import Tree
 from support.studies import EVERY, audited_alone, page_alone
@@ -90,7 +90,7 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
     one = CaseAudit(case, Study(case, seeds=2, certify_seconds=0), (), ())
     for others in (3, 5):
         more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
-        section = where_time_goes(replace(one, made_waterfalls=(first, *more)))
+        section = where_time_goes(with_waterfalls(replace(one), (first, *more)))
         drawn = Page("p", "t", (section,)).pictures
         inner = [b for fold in section.blocks if isinstance(fold, Folded) for b in fold.blocks]
         tables = [b for b in inner if isinstance(b, Grid) and b.columns[0] == "reading"]

@@ -3,6 +3,7 @@
 import pytest
 import trajgap as tg
 from support.drawn import DURATIONS, PROBLEM, STEPS, fall, sound
+from support.findings import with_waterfalls
 from trajgap.compare import AuditReport, CaseAudit, Study
 from trajgap.problem import InNotebooks, TrajgapError
 from trajgap.problem.motions import JointLimits, as_motion
@@ -40,8 +41,8 @@ def test_a_waterfall() -> None:
 def test_an_audit_is_drawn_where_it_has_one_case_with_an_optimum() -> None:
     study = Study(tg.load_case("puma560-mnam-pso-353"))
     own = fall(*STEPS).model_copy(update={"reading": study.main_reading})
-    drawn = CaseAudit(study.case, study, (), (), made_waterfalls=(own,))
-    empty = CaseAudit(study.case, study, (), (), made_waterfalls=())
+    drawn = with_waterfalls(CaseAudit(study.case, study, (), ()), (own,))
+    empty = with_waterfalls(CaseAudit(study.case, study, (), ()), ())
     assert study.case.title in sound(lambda: tg.plot(AuditReport((drawn,))))
     with pytest.raises(TrajgapError, match="no optimum is computed for this case"):
         tg.plot(empty)

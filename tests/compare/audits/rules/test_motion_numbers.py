@@ -225,7 +225,7 @@ def test_a_printed_norm_accuses_nobody(curve: dict[str, Any], printed: str, verd
 def test_the_norm_moves_with_the_durations_as_first_order_says() -> None:
     study = study_of(arm(QUINTIC, speed("2.9"), "1.000 " * 7))
     (row,) = printed_rows(study, study.case.claim("d"))
-    found = largest_norm(row, 1)
+    largest, reach = largest_norm(row, 1)
     problem = row.posed()
 
     def top(durations: np.ndarray) -> float:
@@ -234,9 +234,9 @@ def test_the_norm_moves_with_the_durations_as_first_order_says() -> None:
         return float(np.linalg.norm(trajectory(times, 1), axis=1).max())
 
     exact = top(np.ones(7))
-    assert found.largest == pytest.approx(exact, rel=1e-8)
+    assert largest == pytest.approx(exact, rel=1e-8)
     moved = [top(np.ones(7) + 0.0005 * np.eye(7)[k]) - exact for k in range(7)]
-    assert found.reach == pytest.approx(np.abs(moved).sum(), rel=0.01)
+    assert reach == pytest.approx(np.abs(moved).sum(), rel=0.01)
 
 
 def test_the_largest_norm_is_that_of_a_dense_grid_and_never_below_it() -> None:

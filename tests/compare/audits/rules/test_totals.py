@@ -10,10 +10,9 @@ from support.made_up import algorithms, claim, gain, one_joint, paper, row, sent
 from trajgap.compare.audits import printed_row as row_module
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case
-from trajgap.compare.audits.rounding import RoundingBox
+from trajgap.compare.audits.rounding import RoundingBox, excludes_total
 from trajgap.compare.audits.rules.printed_digits import span
 from trajgap.compare.audits.study import Study
-from trajgap.compare.audits.total_bound import excludes_total
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.nlp import solve
 from trajgap.problem import Interval, Limits, Problem, rest_to_rest, three_five_three
