@@ -11,17 +11,6 @@ from markupsafe import Markup
 from ...problem import Array, fit
 from .submitted import case_of
 
-_OFFERED = (
-    ("", "Usual for the table", "3-5-3 for four way-points, else C2 cubics"),
-    ("3-5-3", "3-5-3 polynomials", "acceleration continuous; four way-points"),
-    ("cubic-spline", "Cubic spline", "acceleration continuous, not 0 at the ends"),
-    ("cubic-spline-virtual", "Cubic spline, two virtual points", "acceleration 0 at the ends"),
-    ("quintic-spline", "Quintic spline", "jerk and snap continuous"),
-    ("rest-to-rest", "Quintic, at rest at each way-point", "stops at every way-point"),
-)
-"""Family, as case files name it, its name, and what tells it apart."""
-_POINTS = "a\n0\n0.7\n1.2\n0.5"
-"""Way-points of the pictures, rad: unequal steps and a reversal."""
 _WIDTH, _HEIGHT = 160.0, 84.0
 """Size of a picture; two stand beside each other at 390 px."""
 
@@ -39,12 +28,23 @@ class OfferedCurve:
 @cache
 def offered_curves() -> tuple[OfferedCurve, ...]:
     """The curves of the form, drawn once a process."""
-    return tuple(OfferedCurve(*one, _picture(one[0]) if one[0] else Markup()) for one in _OFFERED)
+    # Family, as case files name it, its name, and what tells it apart.
+    offered = (
+        ("", "Usual for the table", "3-5-3 for four way-points, else C2 cubics"),
+        ("3-5-3", "3-5-3 polynomials", "acceleration continuous; four way-points"),
+        ("cubic-spline", "Cubic spline", "acceleration continuous, not 0 at the ends"),
+        ("cubic-spline-virtual", "Cubic spline, two virtual points", "acceleration 0 at the ends"),
+        ("quintic-spline", "Quintic spline", "jerk and snap continuous"),
+        ("rest-to-rest", "Quintic, at rest at each way-point", "stops at every way-point"),
+    )
+    return tuple(OfferedCurve(*one, _picture(one[0]) if one[0] else Markup()) for one in offered)
 
 
 def _picture(family: str) -> Markup:
     units = {"position_unit": "rad", "jerk": "1", "jerk_unit": "rad/s^3"}
-    _, case = case_of({"table": _POINTS, "family": family, **units})
+    # Way-points of the pictures, rad: unequal steps and a reversal.
+    points = "a\n0\n0.7\n1.2\n0.5"
+    _, case = case_of({"table": points, "family": family, **units})
     problem = case.problem()
     motion = fit(problem.curve, problem.waypoints, np.full(problem.segments, 1.0))
     times = np.linspace(0.0, motion.total_time, 161)[1:-1]

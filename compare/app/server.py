@@ -26,23 +26,8 @@ _LARGEST = 20_000_000
 """Bytes of a request: half an hour of six joints at 125 rows a second takes that much as text."""
 _PAGES_KEPT = 20
 """Audits whose pages are kept in memory, the last ones."""
-_POLICY = (
-    "default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; form-action 'self'; "
-    "frame-ancestors 'none'; base-uri 'none'"
-)
-"""What pages may load: nothing from elsewhere, and no script at all."""
-_TYPES = {".html": "text/html", ".svg": "image/svg+xml", ".json": "application/json"}
-"""Kinds of files; anything else is plain text."""
 _TEMPLATE = Path(__file__).parent / "templates" / "form.html"
 """The form, as package data."""
-_EXAMPLE = {
-    "table": "j1,j2\n0.0,0.2\n0.6,0.9\n1.1,0.4\n0.8,-0.1",
-    "velocity": "3",
-    "durations": "0.7, 0.8, 0.65",
-    "where": "Table 2",
-    "name": "my-paper",
-}
-"""What the form shows in grey."""
 
 
 def make_server(port: int = 0) -> BaseWSGIServer:
@@ -88,7 +73,12 @@ def make_form() -> Flask:
 
     @app.after_request
     def _closed(response: Response) -> Response:
-        response.headers["Content-Security-Policy"] = _POLICY
+        # What pages may load: nothing from elsewhere, and no script at all.
+        policy = (
+            "default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; "
+            "form-action 'self'; frame-ancestors 'none'; base-uri 'none'"
+        )
+        response.headers["Content-Security-Policy"] = policy
         response.headers["X-Content-Type-Options"] = "nosniff"
         response.headers["Cache-Control"] = "no-store"
         return response
@@ -118,7 +108,9 @@ def make_form() -> Flask:
     def _page(number: int, name: str) -> Any:
         if name not in kept.get(number, {}):
             abort(404)
-        kind = _TYPES.get(Path(name).suffix, "text/plain")
+        # Kinds of files; anything else is plain text.
+        types = {".html": "text/html", ".svg": "image/svg+xml", ".json": "application/json"}
+        kind = types.get(Path(name).suffix, "text/plain")
         head = {"Content-Disposition": "attachment"} if name.endswith(".toml") else {}
         return app.response_class(kept[number][name], mimetype=kind, headers=head)
 
@@ -131,12 +123,7 @@ def make_form() -> Flask:
         except FormError as error:
             return form_page(fields, error.faults), 422
         between = "" if how is None else f", interpolation {how}"
-        return form_page(
-            fields,
-            {},
-            f"{name}{between}\n{found}",
-            str(found.verdict),
-        )
+        return form_page(fields, {}, f"{name}{between}\n{found}", str(found.verdict))
 
     @app.errorhandler(500)
     def _failed(_: Exception) -> Any:
@@ -162,11 +149,19 @@ def form_page(
     fields: Mapping[str, str], faults: Mapping[str, str], result: str = "", verdict: str = ""
 ) -> str:
     """The form with what was filled in, faults beside their fields, and a verdict on a motion."""
+    # What the form shows in grey.
+    example = {
+        "table": "j1,j2\n0.0,0.2\n0.6,0.9\n1.1,0.4\n0.8,-0.1",
+        "velocity": "3",
+        "durations": "0.7, 0.8, 0.65",
+        "where": "Table 2",
+        "name": "my-paper",
+    }
     return fill_template(
         _TEMPLATE,
         fields=fields,
         faults=faults,
-        example=_EXAMPLE,
+        example=example,
         limits=QUANTITIES,
         choices=CHOICES,
         units=tuple(UNITS),

@@ -23,8 +23,6 @@ from ...problem.motions import (
 
 _TABLE = "way-points.csv"
 """Name of the file that the pasted table becomes."""
-_UNKNOWN_PLACES = {"": "table", "case_id": "name", "degree": "family"}
-"""Fields of the form for what they do not ask by this name."""
 
 
 class FormError(Exception):
@@ -82,7 +80,9 @@ def _beside(faults: Iterable[tuple[str, str]]) -> dict[str, str]:
         if place.startswith("units."):
             field = f"{place.removeprefix('units.').split('[')[0]}_unit"
         else:
-            field = place if known else _UNKNOWN_PLACES.get(place, "table")
+            # Fields of the form for what they do not ask by this name.
+            places = {"": "table", "case_id": "name", "degree": "family"}
+            field = place if known else places.get(place, "table")
         shown = f"{place}: {why}" if field == "table" and place else why
         found.setdefault(field, shown)
     return found

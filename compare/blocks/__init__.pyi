@@ -8,6 +8,7 @@ from .audits import (
     steps_table as steps_table,
 )
 from .benches import (
+    ONE_BY_ONE as ONE_BY_ONE,
     bench_blocks as bench_blocks,
     board_table as board_table,
     brief_board as brief_board,
@@ -19,10 +20,7 @@ from .claims import (
     names as names,
     shown_once as shown_once,
 )
-from .suite import (
-    instance_terms as instance_terms,
-    suite_table as suite_table,
-)
+from .suite import instance_terms as instance_terms, suite_table as suite_table
 from .tree import (
     GLOSSARY as GLOSSARY,
     Block as Block,

@@ -29,12 +29,6 @@ _NO_BREAK = "\N{NO-BREAK SPACE}"
 """The unit stays with its number on the narrowest screen."""
 _NONE = "–"
 """A cell without a value."""
-_MANY = 10
-"""Distance, as a share, beyond which a multiple says more than a percentage."""
-_NO_DISTANCE = 5e-4
-"""Distance, as a share, whose one decimal is 0, so its sign would say nothing."""
-_NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
-"""Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 
 
 def reference(source: StatedSource) -> Prose:
@@ -69,9 +63,10 @@ def counts_said(judgements: Sequence[Judgement]) -> str:
 def distances_table(waterfall: Waterfall, caption: str = "", *, ends: bool = True) -> Grid:
     """Each step in seconds, with or without ends, and how far the first one lies above it."""
     known = [step for step in waterfall.steps if not isinstance(step.time, Why)]
+    # Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check.
     rows = [
         (s.name, s.total(ends), _above(known[0].value, s.value), s.known and word(s.known),
-         s.note if s.name in _NOTED else None)
+         s.note if s.name in (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER) else None)
         for s in known
     ]  # fmt: skip
     columns = ("~step", ">total", ">first step relative to this one", "evidence", "found how")
@@ -81,9 +76,10 @@ def distances_table(waterfall: Waterfall, caption: str = "", *, ends: bool = Tru
 def _above(first: float, time: float) -> str | None:
     if time <= 0 or first == time:
         return None
-    if abs(first / time - 1) < _NO_DISTANCE:
+    # Distance, as a share, whose one decimal is 0, so its sign would say nothing.
+    if abs(first / time - 1) < 5e-4:
         return f"0.0{_NO_BREAK}%"
-    if first / time > 1 + _MANY:
+    if first / time > 1 + 10:
         return f"{first / time:.1f} times"
     return f"{100 * (first / time - 1):+.1f}{_NO_BREAK}%"
 
@@ -106,9 +102,6 @@ REACHED_MEANING = (
     "Operators and seeds are not printed, so these runs are information and refute nothing."
 )
 """What the table means."""
-_COLUMNS = ("~algorithm", "limits broken in the search", ">median, its gap", ">best, its gap",
-            ">quartiles, s", ">no answer", ">evaluations; until 1 %; 0.1 %")  # fmt: skip
-"""What a table says of each algorithm."""
 
 
 def reached_table(runs: Iterable[Reached], title: str = "") -> Grid:
@@ -125,7 +118,16 @@ def reached_table(runs: Iterable[Reached], title: str = "") -> Grid:
         )
         for one in runs
     ]
-    return table(_COLUMNS, rows, title)
+    columns = (
+        "~algorithm",
+        "limits broken in the search",
+        ">median, its gap",
+        ">best, its gap",
+        ">quartiles, s",
+        ">no answer",
+        ">evaluations; until 1 %; 0.1 %",
+    )
+    return table(columns, rows, title)
 
 
 def _with_gap(total: float | Why, gap: Gap | Why) -> str:

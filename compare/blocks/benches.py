@@ -21,13 +21,8 @@ from ..documents import (
 from ..gaps import Board, Ranked
 from .tree import Block, Grid, Prose, table
 
-_OVERALL = (
-    "optimizer", ">median of median gaps", ">worst", ">first on", ">runs ≤ 1 %", ">runs ≤ 0.01 %",
-    ">solved to 1 %", ">solved to 0.01 %",
-)  # fmt: skip
-"""What a table says of each optimiser over all problems."""
-_LEADING_GAP = 0.01
-"""Gap of the sentence that leads over many problems: what a paper's digits can tell apart."""
+ONE_BY_ONE = 6
+"""Problems up to which each has its own tables; of more there is one table, and files have all."""
 
 
 def overall_blocks(standings: Sequence[OverallStanding]) -> tuple[Block, ...]:
@@ -39,7 +34,17 @@ def overall_blocks(standings: Sequence[OverallStanding]) -> tuple[Block, ...]:
         shares = [f"{100 * target.rate:.0f} %" for target in shown]
         solved = [f"{target.solved} of {one.problems}" for target in shown]
         rows.append((one.optimizer, *gaps, one.first, *shares, *solved))
-    return Prose(_most_solved(standings), "lead"), table(_OVERALL, rows)
+    columns = (
+        "optimizer",
+        ">median of median gaps",
+        ">worst",
+        ">first on",
+        ">runs ≤ 1 %",
+        ">runs ≤ 0.01 %",
+        ">solved to 1 %",
+        ">solved to 0.01 %",
+    )
+    return Prose(_most_solved(standings), "lead"), table(columns, rows)
 
 
 def _most_solved(standings: Sequence[OverallStanding]) -> str:
@@ -49,7 +54,7 @@ def _most_solved(standings: Sequence[OverallStanding]) -> str:
         f"{100 * target.rate:.0f} %"
         for one in standings
         for target in one.targets
-        if target.gap == _LEADING_GAP
+        if target.gap == SHOWN_GAPS[0]
     ]
     said = (
         f"Within 1 % of the optimum most often: {first.optimizer}, in {share} of its runs over "
@@ -60,12 +65,11 @@ def _most_solved(standings: Sequence[OverallStanding]) -> str:
 
 def bench_blocks(result: BenchResult) -> tuple[Block, ...]:
     """Which optimiser is closest, what is known of the optimum, a row for each, and notes."""
-    messages = [(one.optimizer, message) for one in result.standings for message in one.messages]
     return (
         Prose(result.verdict, "lead"),
         Prose(_optimum_said(result.optimum)),
         table(BENCH_COLUMNS, map(bench_cells, result.standings)),
-        *(Prose(f"{name}: {message}", "warning") for name, message in messages),
+        *(Prose(message, "warning") for message in result.messages),
         *(Prose(note, "note") for note in result.notes),
     )
 
@@ -87,8 +91,6 @@ def _optimum_said(optimum: Reference) -> str:
 _BOARD = (">place", "optimiser", ">runs within 1 %", ">within 0.1 %", ">within 0.01 %",
             ">median gap", ">evaluations to 1 %", ">to 0.1 %", ">to 0.01 %", ">failed")  # fmt: skip
 """What a row of a board says."""
-_NO_ROOM = (6, 7, 8, 9)
-"""Columns that do not fit a terminal."""
 
 
 def board_table(board: Board) -> Grid:
@@ -105,7 +107,7 @@ def brief_board(board: Board, marked: Collection[str] = ()) -> Grid:
         ]
         for one in board.standings
     ]
-    return table(_BOARD, rows).without(*_NO_ROOM)
+    return table(_BOARD, rows).without(6, 7, 8, 9)
 
 
 def _board_cells(board: Board, one: Ranked) -> tuple[str, ...]:

@@ -27,9 +27,6 @@ from ..documents import (
 )
 from .tree import Claimed, word
 
-_POINTS = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
-"""Caveats of doubted way-points."""
-
 
 def claims_shown(
     found: AuditedCase,
@@ -54,7 +51,9 @@ def _claimed(
 ) -> Claimed:
     reason, every = _reasons(found, judgement, words)
     # Of doubted way-points the word has said so, or a short line does, where there is no room.
-    doubts = () if words is None else [c for c in judgement.caveats if c.kind in _POINTS]
+    # Caveats of doubted way-points.
+    points = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
+    doubts = () if words is None else [c for c in judgement.caveats if c.kind in points]
     short = [replace(c, why="") for c in doubts if c.kind is CaveatKind.SOME_POINTS]
     shown = [*short, *(c for c in judgement.caveats if c not in doubts)]
     title = "The whole reason" if len(every) == 1 else f"All {len(every)} reasons"

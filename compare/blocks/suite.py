@@ -8,12 +8,6 @@ from ...problem import shown_bound
 from ...problem.suite import BenchmarkInstance
 from .tree import Cell, Grid, Terms, badge, code, table
 
-_COLUMNS = ("instance", "curve", ">segments", ">joints", "tight in", ">lower, s", ">upper, s",
-            ">width", "evidence", ">basins", ">feasible")  # fmt: skip
-"""What a table says of each instance."""
-_HARDNESS = (9, 10)
-"""Columns that do not fit a terminal."""
-
 
 def suite_table(
     instances: Iterable[BenchmarkInstance],
@@ -46,8 +40,21 @@ def suite_table(
                 hard and f"{hard.feasible_share:.2%}",
             )
         )  # fmt: skip
-    found = table(_COLUMNS, rows, "", "sortable")
-    return found.without(*_HARDNESS) if brief else found
+    columns = (
+        "instance",
+        "curve",
+        ">segments",
+        ">joints",
+        "tight in",
+        ">lower, s",
+        ">upper, s",
+        ">width",
+        "evidence",
+        ">basins",
+        ">feasible",
+    )
+    found = table(columns, rows, "", "sortable")
+    return found.without(*(9, 10)) if brief else found
 
 
 def instance_terms(one: BenchmarkInstance) -> Terms:

@@ -37,9 +37,6 @@ from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
 from .output import emit, kept_proofs, new_output, progress, say
 
-AUDIT_FOLDER = Path("trajgap-audit")
-"""Where the pages go, unless the command line says otherwise."""
-
 
 def audit(
     cases: Annotated[
@@ -101,7 +98,7 @@ def audit(
         for algorithm in case.algorithms:
             study.algorithm(algorithm.id)
     given = [] if certificates is None else read_certificates(certificates)
-    folder = out if out is not None or as_json else AUDIT_FOLDER
+    folder = out if out is not None or as_json else Path("trajgap-audit")
     if folder is not None:
         check_report_folder(folder, chosen)
     if crate is not None:
@@ -161,10 +158,12 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
         parts += [Prose(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
         for title, runs in searches[:_SEARCHES]:
+            # Columns of a page that do not fit a terminal: best, quartiles, evaluations.
+            columns = ("algorithm", "limits broken", "median, its gap", "no answer")
             parts += [
                 Prose(""),
                 Prose(f"How near the paper's algorithms get: {title}"),
-                replace(reached_table(runs).without(*_NO_ROOM), columns=_RUNS),
+                replace(reached_table(runs).without(*(3, 4, 6)), columns=columns),
             ]
         more = len(searches) - _SEARCHES
         parts += [Prose(f"{more} more searches are on the pages.", "note")] if more > 0 else []
@@ -176,7 +175,15 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
     """Verdict, readings and words of each claim; the same words in several places are one row."""
     stated = {one.claim: one for one in case.claims}
     places: dict[tuple[str, str, str], list[str]] = {}
-    for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict)):
+    # Claims in the table: what speaks against them first.
+    order = (
+        ClaimVerdict.REFUTED,
+        ClaimVerdict.INCONSISTENT,
+        ClaimVerdict.DEPENDS,
+        ClaimVerdict.SUPPORTED,
+        ClaimVerdict.NOT_CHECKABLE,
+    )
+    for v in sorted(case.verdicts, key=lambda v: order.index(v.verdict)):
         key = (qualified(v.verdict, v.beside), _under(v), stated[v.claim].text)
         places.setdefault(key, []).append(stated[v.claim].where)
     return [
@@ -187,21 +194,6 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 
 _SEARCHES = 2
 """Searches that a terminal shows, such as that of each joint separately and of all together."""
-_NO_ROOM = (3, 4, 6)
-"""Columns of a page that do not fit a terminal: best, quartiles, evaluations."""
-_RUNS = ("algorithm", "limits broken", "median, its gap", "no answer")
-"""The others, in words that fit one."""
-_REASONS = 3
-"""Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
-those of a long one fill a page."""
-_ORDER = (
-    ClaimVerdict.REFUTED,
-    ClaimVerdict.INCONSISTENT,
-    ClaimVerdict.DEPENDS,
-    ClaimVerdict.SUPPORTED,
-    ClaimVerdict.NOT_CHECKABLE,
-)
-"""Claims in the table: what speaks against them first."""
 
 
 def _unchecked(case: AuditedCase) -> list[str]:
@@ -212,9 +204,11 @@ def _unchecked(case: AuditedCase) -> list[str]:
         # What only informs stands with the claim on its page: it is not a reason.
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
             reasons.setdefault(one.sentences[0].rstrip("."), []).append(places[one.claim])
+    # Reasons that a terminal shows for claims that cannot be checked: enough for a first case,
+    # while those of a long one fill a page.
     lines = [
         f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."
-        for why, where in list(reasons.items())[:_REASONS]
+        for why, where in list(reasons.items())[:3]
     ]
     more = len(reasons) - len(lines)
     rest = [f"{more} more reason{'s are' if more > 1 else ' is'} on the pages."] if more else []
@@ -266,7 +260,8 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
         under = f"; {in_words(case, pid, one.reading)}" if several else ""
         grid = distances_table(one, f"Where the time goes{under}", ends=False)
         if grid.rows:
-            yield grid.without(_HOW)
+            # Column of what was found how, which has no room on a terminal.
+            yield grid.without(4)
         notes |= dict.fromkeys(one.without_optimum)
         notes |= dict.fromkeys(
             f"{capital(step.name)}: {step.time}."
@@ -274,7 +269,3 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
             if isinstance(step.time, Why) and step.name not in (*OPTIMA_STEPS, OPTIMUM_RETIMED)
         )
     yield from (Prose(said, "note") for said in notes)
-
-
-_HOW = 4
-"""Column of what was found how, which has no room on a terminal."""

@@ -19,15 +19,8 @@ from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
 from .. import pages
 from ..audits import asked_as
-from ..blocks import Block, Prose, bench_blocks, overall_blocks
-from ..documents import (
-    SHOWN_GAPS,
-    BenchDocument,
-    BenchResult,
-    Reference,
-    known,
-    noted,
-)
+from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, overall_blocks
+from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, known, noted
 from ..gaps import (
     SECONDS,
     SEEDS,
@@ -40,7 +33,7 @@ from ..gaps import (
     run_bench,
 )
 from .input import Selected, naming, read_case, select
-from .options import MOST, ONE_BY_ONE, ProblemId, run_store, run_workers
+from .options import MOST, ProblemId, run_store, run_workers
 from .output import NEVER_RAN, emit, progress, say
 
 
@@ -155,7 +148,7 @@ def bench(
     if case is None:
         raise typer.BadParameter("name a CASE, FILE or SUITE, or --against leaderboard")
     cases = _cases(case)
-    folder = out if out is not None or as_json else BENCH_FOLDER
+    folder = out if out is not None or as_json else Path("trajgap-bench")
     if folder is not None:
         pages.check_bench_folder(folder)
     asked = []
@@ -187,10 +180,6 @@ def bench(
         say(f"page: {folder / 'index.html'}\n")
     every = [one for result, _ in results for one in result.standings]
     return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
-
-
-BENCH_FOLDER = Path("trajgap-bench")
-"""Where the page goes, unless the command line says otherwise."""
 
 
 def _cases(source: str) -> list[Case]:
@@ -306,14 +295,11 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
     return answer
 
 
-_RESTARTS = (
-    "Evaluations to a gap: the number that restarts need on average until one run reaches it; it "
-    "may exceed the budget of one run."
-)
-"""Said under a table with such a number."""
-
-
 def _tables(document: BenchDocument) -> list[Block]:
+    note = (
+        "Evaluations to a gap: the number that restarts need on average until one run reaches it; "
+        "it may exceed the budget of one run."
+    )
     parts: list[Block] = []
     if document.overall:
         parts += overall_blocks(document.overall)
@@ -325,5 +311,5 @@ def _tables(document: BenchDocument) -> list[Block]:
             for target in one.targets
             if target.gap in SHOWN_GAPS
         )
-        parts += [Prose(_RESTARTS, "note"), Prose("")] if beyond else [Prose("")]
+        parts += [Prose(note, "note"), Prose("")] if beyond else [Prose("")]
     return parts

@@ -32,16 +32,14 @@ class Selected:
     problem: Problem
 
 
-_LARGE = re.compile(
-    r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
-)
-"""A number that may be too large for float64, alone or among others in an argument."""
-
-
 def check_numbers(arguments: Sequence[str]) -> None:
     """Refuse numbers that parsers of options would take for infinite, without a word of it."""
     for before, argument in zip(("", *arguments), arguments, strict=False):
-        for word in _LARGE.findall(argument):
+        # A number that may be too large for float64, alone or among others in an argument.
+        large = re.compile(
+            r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
+        )
+        for word in large.findall(argument):
             option = before if before.startswith("--") else argument.partition("=")[0]
             try:
                 read_float(word)

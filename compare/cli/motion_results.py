@@ -71,7 +71,10 @@ def shown_check(document: MotionCheckDocument) -> list[Block]:
     )
     parts: list[Block] = [Prose(head, "heading"), *_verdict(document, units)]
     if result.not_judged:
-        parts.append(Prose(_STATE_IT, "note"))
+        advice = (
+            "To judge the rest, state its limit, or inf if it has none. --strict fails otherwise."
+        )
+        parts.append(Prose(advice, "note"))
     written = value_or_none(document.repaired)
     if written is not None:
         slower = f"{written.slow_down:.6f} times slower" if written.slow_down > 1 else "as it is"
@@ -111,9 +114,7 @@ def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
 
 def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Block]:
     result = document.result
-    parts: list[Block] = [
-        Prose(f"{result.verdict}: {_sentence(result, tuple(units))}", "heading"),
-    ]
+    parts: list[Block] = [Prose(f"{result.verdict}: {_sentence(result, tuple(units))}", "heading")]
     worst = value_or_none(result.worst)
     if worst is not None:
         value, limit = (_sized(size, worst, units) for size in (worst.value, worst.limit))
@@ -156,23 +157,16 @@ def _gravest(result: CheckedMotion) -> Sequence[MotionJumpShown]:
     return [min(result.jumps, key=lambda one: (order.index(one.quantity), -abs(one.size)))]
 
 
-_SENTENCES = {
-    Verdict.PASS: "every {limit} is kept at every instant",
-    Verdict.VIOLATED: "a limit is exceeded",
-    Verdict.DISCONTINUOUS: "the motion jumps",
-    Verdict.UNDECIDED: "it is not shown whether every {limit} is kept",
-}
-"""What a verdict means, in a few words."""
-
-
-_STATE_IT = "To judge the rest, state its limit, or inf if it has none. --strict fails otherwise."
-"""How the verdict comes to speak of everything."""
-
-
 def _sentence(result: CheckedMotion, joints: Sequence[str]) -> str:
     silent = unstated_words([(one.joint, one.quantity) for one in result.not_judged], joints)
     limit = "stated limit" if silent else "limit"
-    sentence = _SENTENCES[result.verdict].format(limit=limit)
+    sentences = {
+        Verdict.PASS: "every {limit} is kept at every instant",
+        Verdict.VIOLATED: "a limit is exceeded",
+        Verdict.DISCONTINUOUS: "the motion jumps",
+        Verdict.UNDECIDED: "it is not shown whether every {limit} is kept",
+    }
+    sentence = sentences[result.verdict].format(limit=limit)
     if result.verdict is Verdict.DISCONTINUOUS:
         kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
         sentence += f"; limits, jumps apart: {kept}"

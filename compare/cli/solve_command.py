@@ -34,33 +34,10 @@ from ..documents import (
     solve_result,
     value_or_none,
 )
+from . import options as given
 from .certifying import certify_case
 from .input import Selected, naming, read_case, select
 from .motion_checking import MotionOptions
-from .options import (
-    FAMILY,
-    MOST,
-    USUAL,
-    AccelerationLimit,
-    AsJson,
-    Coupled,
-    DecelerationLimit,
-    Form,
-    JerkLimit,
-    LimitsFile,
-    MotionUnits,
-    NoCache,
-    Out,
-    PositionLimit,
-    ProblemId,
-    ProofWorkers,
-    Rate,
-    ReadingId,
-    Retimed,
-    SamplesFile,
-    UrdfFile,
-    VelocityLimit,
-)
 from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons
 from .solve_files import (
@@ -82,11 +59,11 @@ def solve(
             "with limits as options.",
         ),
     ],
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    coupling: Coupled = None,
+    problem: given.ProblemId = None,
+    reading: given.ReadingId = None,
+    coupling: given.Coupled = None,
     starts: Annotated[
-        int, typer.Option(min=1, max=MOST, help="Number of starts of the solver.")
+        int, typer.Option(min=1, max=given.MOST, help="Number of starts of the solver.")
     ] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     prove: Annotated[
@@ -145,24 +122,24 @@ def solve(
             "repeated.",
         ),
     ] = None,
-    workers: ProofWorkers = None,
-    velocity: VelocityLimit = None,
-    acceleration: AccelerationLimit = None,
-    deceleration: DecelerationLimit = None,
-    jerk: JerkLimit = None,
-    position: PositionLimit = None,
-    limits: LimitsFile = None,
-    urdf: UrdfFile = None,
-    units: MotionUnits = None,
-    family: Annotated[str | None, typer.Option(help=FAMILY, show_default=USUAL)] = None,
-    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None,
-    samples: SamplesFile = None,
-    rate: Rate = None,
-    form: Form = None,
-    retimed: Retimed = False,
-    no_cache: NoCache = False,
-    as_json: AsJson = False,
-    out: Out = None,
+    workers: given.ProofWorkers = None,
+    velocity: given.VelocityLimit = None,
+    acceleration: given.AccelerationLimit = None,
+    deceleration: given.DecelerationLimit = None,
+    jerk: given.JerkLimit = None,
+    position: given.PositionLimit = None,
+    limits: given.LimitsFile = None,
+    urdf: given.UrdfFile = None,
+    units: given.MotionUnits = None,
+    family: given.Family = None,
+    degree: given.Degree = None,
+    samples: given.SamplesFile = None,
+    rate: given.Rate = None,
+    form: given.Form = None,
+    retimed: given.Retimed = False,
+    no_cache: given.NoCache = False,
+    as_json: given.AsJson = False,
+    out: given.Out = None,
 ) -> int:
     """Solve a case exactly: all its problems under all its readings.
 
@@ -173,34 +150,27 @@ def solve(
 
     With --certify, Ctrl-C leaves the best interval, and a state to continue from.
     """
-    flags = {
-        "velocity": velocity,
-        "acceleration": acceleration,
-        "deceleration": deceleration,
-        "jerk": jerk,
-        "position": position,
-    }
-    stated = MotionOptions(flags, limits, urdf, units=units)
-    read = _read(case, stated, family, degree)
+    read = _read(case, MotionOptions.of(locals()), family, degree)
+    of_samples = {"--rate": rate, "--retimed": retimed or None, "--format": form}
+    lone = [name for name, value in of_samples.items() if value is not None]
     if not certify:
-        options = {
+        of_proofs = {
             "--gap": gap,
             "--any-curve": any_curve or None,
             "--certificates": certificates,
             "--resume": resume or None,
             "--workers": workers,
         }
-        for name, value in options.items():
+        for name, value in of_proofs.items():
             if value is not None:
                 raise typer.BadParameter(f"{name} needs --certify")
-        if samples is None and (rate is not None or form is not None or retimed):
-            lone = "--rate" if rate is not None else "--retimed" if retimed else "--format"
-            raise typer.BadParameter(f"{lone} needs --samples")
+        if samples is None and lone:
+            raise typer.BadParameter(f"{lone[0]} needs --samples")
         asked = None if samples is None else asked_samples(samples, rate, form, retimed)
         return _solve_case(
             read, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
         )
-    if samples is not None or rate is not None or form is not None or retimed:
+    if samples is not None or lone:
         raise typer.BadParameter("--samples needs a solution; leave --certify out")
     return certify_case(
         read,
@@ -308,14 +278,11 @@ def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
     return known[key]
 
 
-_COLUMNS = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
-"""What the table says of each result, or of each of its joints."""
-
-
 def _tables(document: SolveDocument, case: Case) -> list[Block]:
     results = document.results
     parts: list[Block] = [Prose(results[0].case, "heading")]
-    parts += by_result(results, _COLUMNS, _cells, "longest", case)
+    columns = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
+    parts += by_result(results, columns, _cells, "longest", case)
     parts += [Prose(said) for result in results for said in _procedure(result, case)]
     active = [
         (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")

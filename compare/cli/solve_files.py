@@ -90,10 +90,6 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
     return names
 
 
-_RATE = 500.0
-"""Rows a second by default: what arms of today are commanded at."""
-
-
 @dataclass(frozen=True)
 class AskedSamples:
     """What is to be written."""
@@ -113,7 +109,9 @@ def asked_samples(
     except ValueError:
         known = ", ".join(MotionForm)
         raise CaseError("--format", "", f"{form!r} is unknown; use {known}") from None
-    return AskedSamples(file, _RATE if rate is None else rate, wanted, retimed)
+    # Rows a second by default: what arms of today are commanded at.
+    usual = 500.0
+    return AskedSamples(file, usual if rate is None else rate, wanted, retimed)
 
 
 def check_one_motion(case: Case, selected: Sequence[Selected]) -> None:

@@ -52,8 +52,7 @@ def verify(
         ),
     ] = None,
     seconds: Annotated[
-        float,
-        typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file."),
+        float, typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file.")
     ] = 60.0,
     as_json: AsJson = False,
     out: Out = None,

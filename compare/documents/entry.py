@@ -88,10 +88,7 @@ class Entry(Described, InNotebooks):
     """An object of a document; its fields are the keys, in their order."""
 
     model_config = ConfigDict(
-        frozen=True,
-        arbitrary_types_allowed=True,
-        populate_by_name=True,
-        protected_namespaces=(),
+        frozen=True, arbitrary_types_allowed=True, populate_by_name=True, protected_namespaces=()
     )
 
     @classmethod

@@ -17,9 +17,15 @@ from .certified import CertifyDocument, VerifyDocument
 from .checked import CheckDocument, MotionCheckDocument
 from .entry import SCHEMA, Document, Why
 from .finding import Caveat, CaveatKind
-from .lookups import CaseDiffDocument, CasesDocument, ExplainDocument, ShowDocument
+from .lookups import (
+    CaseDiffDocument,
+    CasesDocument,
+    ExplainDocument,
+    ShowDocument,
+    SuiteDocument,
+    SuiteShowDocument,
+)
 from .solved import SolveDocument
-from .suite import SuiteDocument, SuiteShowDocument
 from .vocabulary import VOCABULARY, Rule, Words, meaning, meanings
 
 DOCUMENTS: tuple[type[Document], ...] = (

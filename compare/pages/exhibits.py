@@ -26,13 +26,6 @@ from .motions_shown import alike, drawn, whole_rows
 from .numbers import noted, only_under
 from .units import both_units, paper_units
 
-_SAMPLES = 20_000
-"""Positions of the workspace that its bounding box is taken from, as by default in case files."""
-_SEED = 0
-"""Of the sampled positions, so every page shows the same."""
-_NEGLIGIBLE = 1e-9
-"""Distance that float arithmetic alone could leave, m."""
-
 
 def exhibits_of_motion(study: Study) -> list[Section]:
     """Sections with workspace, control polygon and jumps; absent where there is none."""
@@ -91,11 +84,7 @@ def _jumps_of(
             f"{jump.time:.3f} s",
             (
                 both_units(
-                    statement,
-                    "velocity",
-                    [jump.size],
-                    "+.6g",
-                    [statement.labels.index(jump.joint)],
+                    statement, "velocity", [jump.size], "+.6g", [statement.labels.index(jump.joint)]
                 )
             ),
         )
@@ -157,7 +146,9 @@ def _workspaces(study: Study) -> Iterator[Block]:
     chain = study.case.chain()
     assert chain is not None
     try:
-        cloud = sample_workspace(chain, _SAMPLES, _SEED)
+        # Positions of the workspace that its bounding box is taken from, as by default in case
+        # files.
+        cloud = sample_workspace(chain, 20_000, 0)
     except TrajgapError:
         # A joint that slides without bounds has no workspace to sample.
         return
@@ -190,7 +181,8 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
     measured = [[to_si(number, place.unit) for number in place.values] for place in places]
     points = np.array([[m.value for m in row] for row in measured])
     halves = np.array([[(m.upper - m.lower) / 2 for m in row] for row in measured])
-    slack = dh.rounding(chain) + np.linalg.norm(halves, axis=1) + _NEGLIGIBLE
+    # Distance that float arithmetic alone could leave, m.
+    slack = dh.rounding(chain) + np.linalg.norm(halves, axis=1) + 1e-9
     free = np.full(chain.joints, np.nan)
     near = [proximity(chain, point, free) for point in points]
     names = tuple(place.label or place.id for place in places)

@@ -130,11 +130,7 @@ def _instances(entry: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
     rows = []
     for one in entry.instances:
         for own in one.readings:
-            cells = [
-                labels.get(own.reading, own.reading),
-                f"{one.step:g}",
-                one.instance + 1,
-            ]
+            cells = [labels.get(own.reading, own.reading), f"{one.step:g}", one.instance + 1]
             for optimum in (own.slower_optimum, own.faster_optimum):
                 total = optimum.total_time
                 cells.append(optimum.status if isinstance(total, Why) else f"{total:.4f}")

@@ -264,22 +264,14 @@ def landscapes(one: CaseAudit) -> Section:
             continue  # its ratios are one point of the map
         if problem.segments != 3:
             blocks.append(
-                Prose(
-                    f"{name}: {problem.segments} segments; a landscape needs three.",
-                    "note",
-                )
+                Prose(f"{name}: {problem.segments} segments; a landscape needs three.", "note")
             )
             continue
         runs = _runs(study, pair)
         printed = [(place(row.claim), row.durations.value) for row in whole_rows(study, pair)]
         ends = {each: np.array([r.durations for r in many]) for each, many in runs.items()}
         blocks += _landscape(
-            file_name("landscape", pair.problem),
-            problem,
-            study.optimum(pair),
-            printed,
-            ends,
-            name,
+            file_name("landscape", pair.problem), problem, study.optimum(pair), printed, ends, name
         )
         single: list[Drawn] = []
         for tables, rows in _tables_by_joint(study, pair):

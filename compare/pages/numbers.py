@@ -159,8 +159,6 @@ def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> 
 
 _OPTIMA = "Optimum of each formulation"
 """Title of the section."""
-NINE = 9
-"""Nine decimals of a proved bound, as the certificates' tables have them."""
 _ANSWER = ("status", ">total", "by", "evidence", ">durations, s", "check", ">KKT residual")
 """Columns that say how a solve ended."""
 
@@ -183,7 +181,7 @@ def _answer(solution: Solution) -> tuple[object, ...]:
         called = "infimum" if solution.approach_proved else "approached"
         total = f"{solution.infimum:.6f} s ({called})"
     if total is not None and solution.lower_bound is not None:
-        total += f"\nat least {shown_bound(solution.lower_bound, 'lower', places=NINE)} s,\nproved"
+        total += f"\nat least {shown_bound(solution.lower_bound, 'lower', places=9)} s,\nproved"
     return (
         (solution.status + (f"\n{solution.why}" if solution.why else "")),
         total,

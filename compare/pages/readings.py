@@ -14,11 +14,6 @@ from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, 
 from .numbers import problem_cell
 from .units import both_units
 
-_FEW = 4
-"""Rows of a table that stand in the open; a longer one is folded."""
-_OPEN = (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)
-"""What decides nothing about limits."""
-
 
 def side_by_side(one: CaseAudit) -> Section:
     """What each reading makes of the printed answers, and what holds whatever the reading."""
@@ -30,7 +25,7 @@ def side_by_side(one: CaseAudit) -> Section:
         title = f"{len(summary.admissible)} readings side by side"
         found = answers(summary, lambda claim, _: place(one.case.claim(claim)))
         said = [Prose(capital(answer)) for answer in found]
-        if rows > _FEW:
+        if rows > 4:
             blocks += said
             blocks.append(Folded(title, tuple(tables)))
         else:
@@ -147,7 +142,8 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
     limits = Cell("")
     if not isinstance(outcome.keeping, Why):
         limits = word(outcome.keeping)
-        if outcome.keeping in _OPEN:
+        # What decides nothing about limits.
+        if outcome.keeping in (Keeping.DISCONTINUOUS, Keeping.UNDECIDED):
             # The word that the claim has under this reading; its reason is behind the link.
             limits = replace(limits, text=str(ClaimVerdict.NOT_CHECKABLE))
     return (

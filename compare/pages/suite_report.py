@@ -8,10 +8,7 @@ from collections.abc import Callable, Sequence
 from ...problem import QUANTITIES, Limits, Problem, visible
 from ...problem.suite import BenchmarkInstance, plain_text, suite_version
 from ..blocks import Block, Cell, Page, Prose, Section, Terms, instance_terms, suite_table, table
-from .writer import page_text
-
-_TITLE = "Suite of certified instances"
-"""Heading of the index."""
+from .rendering import page_text
 
 
 def suite_pages(
@@ -28,7 +25,7 @@ def suite_pages(
         found[f"{one.name}.html"] = page_text(instance_page(one))
         found[f"{one.name}.toml"] = plain_text(one)
     rows = Section("instances", "Instances", (suite_table(instances, "{}.html"),))
-    title = f"{_TITLE} {suite_version()}"
+    title = f"Suite of certified instances {suite_version()}"
     index = Page("suite", title, (rows,), _counts(instances), links=(("JSON", "suite.json"),))
     return {**found, "index.html": page_text(index)}
 

@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..audits.instances import InstancesResult, distribution, percent_range
 from ..documents import Effect
-from .drawing import INK, PAPER, RED, SERIES, Picture, drawing, light_grid, shown
+from .drawing import (
+    INK,
+    PAPER,
+    RED,
+    Picture,
+    drawing,
+    finish,
+    hollow,
+    light_grid,
+    name_rows,
+    series,
+    shown,
+)
+from .searches import spread_dots
 
-_MARKERS = ("o", "s", "^", "D")
+_MARKERS = "os^D"
 """Of the step lengths, in their order."""
-_OFFSET = 0.2
-"""Distance of the rows of the objectives from the middle of their reading."""
 _SHOWN_OBJECTIVES = 2
 """Objectives that are drawn: filled and hollow tell two apart."""
 
@@ -38,15 +48,10 @@ def instances_picture(result: InstancesResult, *, title: str) -> Picture:
         panels = figure.subplots(1, 3, sharey=True, width_ratios=(1.25, 1.25, 1.0))
         for axes, effect in zip(panels, Effect, strict=True):
             _panel(axes, result, effect)
-        rows = range(len(result.readings))
-        panels[0].set_yticks(rows, [_label(result, reading) for reading in result.readings])
-        panels[0].set_ylim(len(result.readings) - 0.4, -0.6)
-        handles, names = _legend(result)
-        figure.legend(handles, names, loc="outside lower left", ncols=4)
-        figure.suptitle(shown(title, 105, 2), x=0.005, ha="left", fontsize=11, weight="bold")
-        # The layout moves a little with every drawing; frozen, it gives the same bytes.
-        figure.draw_without_rendering()
-        figure.set_layout_engine("none")
+        names = [_label(result, reading) for reading in result.readings]
+        name_rows(panels[0], names, 0.6)
+        figure.legend(*_legend(result), loc="outside lower left", ncols=4)
+        finish(figure)
     return figure
 
 
@@ -76,17 +81,14 @@ def _panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:
     objectives = _objectives(result, effect)
     for row, reading in enumerate(result.readings):
         for at in objectives:
-            y = row + _OFFSET * (2 * at - len(objectives) + 1)
+            y = row + 0.2 * (2 * at - len(objectives) + 1)
             for which, step in enumerate(result.block.lengths):
-                colour = SERIES[which % len(SERIES)][0]
                 values = 100 * result.reductions(reading, effect, at, step)
-                good = np.sort(values[np.isfinite(values)])
-                # Spread by rank, so no picture depends on a random draw.
-                jitter = 0.1 * (2 * ((np.arange(good.size) * 0.618034) % 1.0) - 1)
-                axes.scatter(
-                    good, y + jitter, s=16, marker=_MARKERS[which % len(_MARKERS)],
+                colour = series(which)[0]
+                spread_dots(
+                    axes, values, y, 0.1, s=16, marker=_MARKERS[which % len(_MARKERS)],
                     facecolor=colour if at == 0 else PAPER, edgecolor=colour, linewidths=0.8,
-                    alpha=0.8, zorder=3,
+                    alpha=0.8,
                 )  # fmt: skip
             found = distribution(result.reductions(reading, effect, at))
             if found.missing < found.pairs:
@@ -100,24 +102,15 @@ def _panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:
 
 
 def _legend(result: InstancesResult) -> tuple[list[Line2D | Patch], list[str]]:
-    handles: list[Line2D | Patch] = []
-    names = []
+    found: dict[str, Line2D | Patch] = {}
     for which, step in enumerate(result.block.lengths):
-        colour, marker = SERIES[which % len(SERIES)][0], _MARKERS[which % len(_MARKERS)]
-        handles.append(Line2D([], [], color=colour, marker=marker, markersize=4, linestyle="none"))
-        names.append(f"steps of {step:g} {result.block.unit}")
+        colour, marker = series(which)[0], _MARKERS[which % len(_MARKERS)]
+        dot = Line2D([], [], color=colour, marker=marker, markersize=4, linestyle="none")
+        found[f"steps of {step:g} {result.block.unit}"] = dot
     for at, objective in enumerate(result.block.objectives[:_SHOWN_OBJECTIVES]):
-        fill = INK if at == 0 else PAPER
-        handles.append(
-            Line2D(
-                [], [], marker="o", markersize=4, linestyle="none", markerfacecolor=fill,
-                markeredgecolor=INK,
-            )
-        )  # fmt: skip
-        names.append(f"{'filled' if at == 0 else 'hollow'}: {objective}")
-    handles.append(Line2D([], [], color=INK, linewidth=2.2))
-    names.append("median")
+        word, fill = ("filled", INK) if at == 0 else ("hollow", PAPER)
+        found[f"{word}: {objective}"] = Line2D([], [], **hollow(4, face=fill))
+    found["median"] = Line2D([], [], color=INK, linewidth=2.2)
     if result.printed is not None:
-        handles.append(Patch(facecolor=RED, alpha=0.5))
-        names.append("printed")
-    return handles, names
+        found["printed"] = Patch(facecolor=RED, alpha=0.5)
+    return list(found.values()), list(found)

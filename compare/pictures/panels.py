@@ -10,21 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ...problem import Array
-from .drawing import BLUE, GRID, INK, ORANGE, PAPER, RED, Picture, drawing, finish, shown
+from .drawing import BLUE, GRID, INK, ORANGE, RED, Picture, Style, drawing, finish, hollow, shown
 from .traced import Stretches
 
 Unit: TypeAlias = tuple[str, float]
 """The unit as it is written, and how much of SI one of it is."""
 Units: TypeAlias = Mapping[tuple[str, str], Unit]
 """How a quantity of a joint is shown, by the joint's label and the quantity."""
-_BESIDE = 0.02
-"""Share of the time that is left free before and after it: markers at both ends are whole."""
-_OFF_SCALE = 0.12
-"""Share of a limit below which drawing the limit would flatten the curve."""
-_LARGE, _FAR = 1e4, 10.0
-"""Value and ratio to a limit from which on fewer digits are written: they fill the head."""
-_DOTS = {60: 5.0, 10**9: 2.0}
-"""Points of type across the dot of a sample, up to so many samples: many would run together."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +37,11 @@ class Mark:
     def words(self, one: float) -> str:
         """The value, and how much of its limit it is, in a unit that is so much of SI."""
         value = self.value / one
-        text = f"{value:.4f}" if abs(value) < _LARGE else f"{value:.6g}"
+        # Fewer digits of large numbers: they fill the head of a panel.
+        text = f"{value:.4f}" if abs(value) < 1e4 else f"{value:.6g}"
         if np.isfinite(self.limit) and self.limit:
             limit = f"±{abs(self.limit) / one:.5g}" if self.both else f"{self.limit / one:.5g}"
-            places = 2 if abs(self.ratio) < _FAR else 0
+            places = 2 if abs(self.ratio) < 10 else 0
             text += f", {100 * self.ratio:.{places}f} % of {limit}"
         elif np.isfinite(self.limit):
             text += ", limit 0"
@@ -116,7 +109,7 @@ def panels_picture(
         figure = Picture(title, description, 3.3 * many, 0.95 + 1.45 * len(rows))
         # Axes that share one scale ask all others at every turn: each has its own, of one range.
         grid = figure.subplots(len(rows), many, squeeze=False)
-        free = _BESIDE * (span[1] - span[0])
+        free = 0.02 * (span[1] - span[0])  # markers at both ends are whole
         for k, row in enumerate(rows):
             for axes, line in zip(grid[k], row, strict=True):
                 _panel(axes, line)
@@ -136,51 +129,28 @@ def panels_picture(
 def _panel(axes: Axes, line: Line) -> None:
     written, one = line.unit
     times, values = line.times, line.values / one
-    style, dot = ("none", ".") if line.dots else ("-", "none")
-    wide = next(points for most, points in _DOTS.items() if times.size <= most)
+    style: Style = {"linestyle": "-"}
+    if line.dots:  # many would run together
+        style = {"linestyle": "none", "marker": ".", "markersize": 5.0 if times.size <= 60 else 2.0}
     ends = np.tile([0.0, 1.0, np.nan], len(line.breaks))
-    axes.plot(
-        np.repeat(line.breaks, 3),
-        ends,
-        transform=axes.get_xaxis_transform(),
-        color=GRID,
-        linewidth=0.7,
-        zorder=0,
-        scaley=False,
-    )
-    axes.axhline(0.0, color=GRID, linewidth=0.7, zorder=0)
-    axes.plot(
-        times,
-        values,
-        color=BLUE,
-        linewidth=1.4,
-        zorder=2,
-        linestyle=style,
-        marker=dot,
-        markersize=wide,
-    )
+    behind: Style = {"color": GRID, "linewidth": 0.7, "zorder": 0}
+    across = axes.get_xaxis_transform()
+    axes.plot(np.repeat(line.breaks, 3), ends, transform=across, scaley=False, **behind)
+    axes.axhline(0.0, **behind)
+    axes.plot(times, values, color=BLUE, linewidth=1.4, zorder=2, **style)
     size = float(np.nanmax(np.abs(values), initial=0.0))
     near = [x / one for x in line.limits if np.isfinite(x)]
-    drawn = [x for x in near if line.quantity == "position" or size > _OFF_SCALE * abs(x)]
+    # A limit far away would flatten the curve.
+    drawn = [x for x in near if line.quantity == "position" or size > 0.12 * abs(x)]
     for limit in drawn:
         axes.axhline(limit, color=INK, linestyle=(0, (4, 3)), linewidth=0.9, zorder=1)
     for colour, stretches in ((ORANGE, line.unsure), (RED, line.broken)):
+        shade: Style = {"facecolor": colour, "edgecolor": colour, "alpha": 0.22}
         for start, end in stretches:
-            axes.axvspan(
-                start, end, facecolor=colour, edgecolor=colour, alpha=0.22, linewidth=1.0, zorder=1
-            )
+            axes.axvspan(start, end, linewidth=1.0, zorder=1, **shade)
     for start, end in line.broken:
         inside = (times >= start) & (times <= end)
-        axes.plot(
-            times[inside],
-            values[inside],
-            color=RED,
-            linewidth=2.0,
-            zorder=3,
-            linestyle=style,
-            marker=dot,
-            markersize=wide,
-        )
+        axes.plot(times[inside], values[inside], color=RED, linewidth=2.0, zorder=3, **style)
     if line.jumps:
         gaps = np.nonzero(np.isnan(values))[0]
         before, after = values[gaps - 1], values[gaps + 1]
@@ -188,16 +158,7 @@ def _panel(axes: Axes, line: Line) -> None:
         axes.plot(np.repeat(times[gaps], 3), steps.ravel(), color=RED, linewidth=1.4, zorder=3)
     axes.set_ylabel(written)
     if line.points[0].size:
-        axes.plot(
-            line.points[0],
-            line.points[1] / one,
-            linestyle="none",
-            marker="o",
-            markersize=4.5,
-            markerfacecolor=PAPER,
-            markeredgecolor=INK,
-            zorder=4,
-        )
+        axes.plot(line.points[0], line.points[1] / one, zorder=4, **hollow(4.5))
     if line.quantity == "position":
         what = "position" if line.linear else "angle"
         axes.set_title(f"joint {shown(line.joint, 12)}, {what}", weight="bold")

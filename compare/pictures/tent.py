@@ -11,20 +11,7 @@ from matplotlib.axes import Axes
 from ...heuristics import TentCollapse, tent_collapse
 from ...heuristics.algorithms import TentRule, exact_orbit, tent_population
 from ...problem import Array
-from .drawing import (
-    BLUE,
-    GRID,
-    ORANGE,
-    PAPER,
-    RED,
-    Picture,
-    drawing,
-    finish,
-    light_grid,
-)
-
-_BEYOND = 12
-"""Steps drawn after the double orbit has come to rest."""
+from .drawing import BLUE, GRID, ORANGE, PAPER, RED, Picture, Style, drawing, finish, light_grid
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,17 +70,10 @@ def tent_scatter(
     def scaled(points: Array) -> Array:
         return lower + (upper - lower) * points
 
-    collapsed = {
-        rule: int(
-            (tent_population(np.random.default_rng(0), members, dimensions, rule, beta) == 0.0)
-            .any(axis=1)
-            .sum()
-        )
+    filled = {
+        rule: tent_population(np.random.default_rng(0), members, dimensions, rule, beta)
         for rule in TentRule
     }
-    doubles = tent_population(
-        np.random.default_rng(0), members, dimensions, TentRule.COORDINATE, beta
-    )
     return TentScatter(
         start=start,
         beta=share,
@@ -103,8 +83,8 @@ def tent_scatter(
         exact=scaled(np.array([float(x) for x in orbit.exact])[: steps + 1].reshape(shape)),
         doubles=scaled(orbit.doubles[: steps + 1].reshape(shape)),
         apart_exact=scaled(np.array([[float(x) for x in one] for one in apart]).T),
-        apart_doubles=scaled(doubles),
-        collapsed=collapsed,
+        apart_doubles=scaled(filled[TentRule.COORDINATE]),
+        collapsed={rule: int((one == 0.0).any(axis=1).sum()) for rule, one in filled.items()},
     )
 
 
@@ -126,28 +106,19 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
     with drawing():
         figure = Picture(title, description, 9.9, 3.15)
         apart, left, middle, right = figure.subplots(1, 4)
-        _scatter(apart, scatter.apart_exact, scatter, unit, BLUE, "o")
-        _scatter(apart, scatter.apart_doubles, scatter, unit, ORANGE, "D")
-        apart.set_title("orbit per coordinate", weight="bold")
-        _scatter(left, scatter.exact, scatter, unit, BLUE, "o")
-        left.set_title("one orbit, exactly", weight="bold")
-        _scatter(middle, scatter.doubles, scatter, unit, ORANGE, "D")
-        middle.set_title("one orbit, doubles", weight="bold")
+        _scatter(apart, scatter.apart_exact, scatter, unit, "orbit per coordinate")
+        _scatter(apart, scatter.apart_doubles, scatter, unit, "orbit per coordinate", doubles=True)
+        _scatter(left, scatter.exact, scatter, unit, "one orbit, exactly")
+        _scatter(middle, scatter.doubles, scatter, unit, "one orbit, doubles", doubles=True)
         if scatter.at_zero:
             corner = (scatter.lower, scatter.lower)
             middle.plot(*corner, "o", markersize=12, markerfacecolor="none", color=RED, zorder=4)
             middle.annotate(
-                f"{scatter.at_zero} of {members} begin here",
-                corner,
-                xytext=(14, 14),
-                textcoords="offset points",
-                color=RED,
-                fontsize=8.5,
-                weight="bold",
+                f"{scatter.at_zero} of {members} begin here", corner, xytext=(14, 14),
+                textcoords="offset points", color=RED, fontsize=8.5, weight="bold", zorder=5,
                 arrowprops={"arrowstyle": "-", "color": RED, "linewidth": 0.8, "shrinkB": 7},
                 bbox={"boxstyle": "round,pad=0.15", "facecolor": PAPER, "linewidth": 0},
-                zorder=5,
-            )
+            )  # fmt: skip
         _steps(right, scatter)
         key = f"● exact   ◆ double precision   ·   β = {float(scatter.beta):g}, seed 0"
         finish(figure, f"{key}   ·   one orbit from {scatter.start}: in doubles {rest}")
@@ -165,18 +136,12 @@ def _exactly(scatter: TentScatter) -> str:
 
 
 def _scatter(
-    axes: Axes, points: Array, scatter: TentScatter, unit: str, colour: str, marker: str
+    axes: Axes, points: Array, scatter: TentScatter, unit: str, title: str, doubles: bool = False
 ) -> None:
-    axes.plot(
-        points[:, 0],
-        points[:, 1],
-        linestyle="none",
-        marker=marker,
-        markersize={"o": 5.0, "D": 2.8}[marker],
-        color=colour,
-        clip_on=False,
-        zorder=3,
-    )
+    colour, marker, size = (ORANGE, "D", 2.8) if doubles else (BLUE, "o", 5.0)
+    dots: Style = {"linestyle": "none", "marker": marker, "markersize": size, "color": colour}
+    axes.plot(points[:, 0], points[:, 1], clip_on=False, zorder=3, **dots)
+    axes.set_title(title, weight="bold")
     room = 0.04 * (scatter.upper - scatter.lower)
     axes.set_xlim(scatter.lower - room, scatter.upper + room)
     axes.set_ylim(scatter.lower - room, scatter.upper + room)
@@ -190,20 +155,13 @@ def _steps(axes: Axes, scatter: TentScatter) -> None:
     orbit = scatter.orbit
     zero = orbit.zero_at
     last = len(orbit.exact) - 1
-    shown = last if zero is None else min(last, zero + _BEYOND)
+    # Some steps more than it takes the double orbit to come to rest.
+    shown = last if zero is None else min(last, zero + 12)
     at = np.arange(shown + 1)
     exact = [float(x) for x in orbit.exact[: shown + 1]]
     axes.plot(at, exact, color=BLUE, linewidth=1.0, marker="o", markersize=3.2, zorder=2)
-    axes.plot(
-        at,
-        orbit.doubles[: shown + 1],
-        color=ORANGE,
-        linewidth=1.0,
-        linestyle=(0, (3, 2)),
-        marker="D",
-        markersize=2.4,
-        zorder=3,
-    )
+    dashes: Style = {"linewidth": 1.0, "linestyle": (0, (3, 2)), "marker": "D", "markersize": 2.4}
+    axes.plot(at, orbit.doubles[: shown + 1], color=ORANGE, zorder=3, **dashes)
     axes.set_title("by steps", weight="bold")
     if zero is not None and zero <= shown:
         axes.axvline(zero, color=RED, linewidth=1.0, zorder=1)

@@ -9,14 +9,8 @@ import numpy as np
 
 from ...problem import TOLERANCE, Array, Trajectory, extrema
 
-_SAMPLES = 48
-"""Points of a segment that are drawn, beside its exact extrema: smooth at the width of a page."""
 POINTS = 480
 """Points of a curve of many segments, extrema apart: more than a panel has pixels."""
-_FEWEST = 8
-"""Points of a segment at least, however many there are."""
-_LOST = 1e-16
-"""Share of the largest coefficient below which another one moves no digit on a piece."""
 HUGE = 1e300
 """What stands for an error of which nothing is known: beyond every limit."""
 Stretches = Sequence[tuple[float, float]]
@@ -37,7 +31,7 @@ def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Arr
         return thinned(clock.T[known], found.T[known])
     times: list[Array] = []
     values: list[Array] = []
-    count = max(_FEWEST, min(_SAMPLES, POINTS // len(trajectory.durations)))
+    count = max(8, min(48, POINTS // len(trajectory.durations)))
     turning = extrema(trajectory, column, order)
     scale = max(abs(e.value) for e in turning) or 1.0
     for k, start in enumerate(trajectory.breaks[:-1]):
@@ -134,7 +128,7 @@ def _roots(polynomials: Sequence[Array]) -> Iterator[float]:
     """Places in (0, 1) at which any of some polynomials vanishes."""
     for one in polynomials:
         # Leading coefficients that are lost in the digits of the others would divide them.
-        told = np.nonzero(np.abs(one) > _LOST * np.abs(one).max())[0]
+        told = np.nonzero(np.abs(one) > 1e-16 * np.abs(one).max())[0]
         powers = one[: told[-1] + 1] if told.size else one[:0]
         for root in np.polynomial.polynomial.polyroots(powers) if powers.size else ():
             if abs(root.imag) < 1e-9 and 0 < root.real < 1:

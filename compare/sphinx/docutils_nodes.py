@@ -11,11 +11,6 @@ from ..blocks import Block, CardShown, Cell, Claimed, Drawn, Folded, Grid, Prose
 from ..documents import capital
 from ..pictures import embedded
 
-_WIDTHS = {"~": 40, ">": 20}
-"""Characters of a column of prose and of one of numbers, for builders that draw tables."""
-_WIDTH = 24
-"""Of another column of such a table."""
-
 
 def nodes_of(blocks: Iterable[Block]) -> list[nodes.Node]:
     """What a page of the site shows of blocks; their folds stand open outside HTML."""
@@ -119,7 +114,7 @@ def _table(
     found = nodes.table(classes=["trajgap-table", *(f"trajgap-{one}" for one in styles), *given])
     group = nodes.tgroup(cols=len(columns))
     for mark in marks or [""] * len(columns):
-        group += nodes.colspec(colwidth=_WIDTHS.get(mark, _WIDTH) if drawn else 1)
+        group += nodes.colspec(colwidth={"~": 40, ">": 20}.get(mark, 24) if drawn else 1)
     head, body = nodes.thead(), nodes.tbody()
     head += _row(map(Cell, columns))
     body += [_row(cells) for cells in rows]

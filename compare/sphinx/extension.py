@@ -54,10 +54,6 @@ def value_role(
     return [nodes.inline(rawtext, said, classes=["trajgap-value"])], []
 
 
-STATIC = Path(__file__).parent / "static"
-"""Style and script of the pages: shipped, so nothing comes from the network."""
-
-
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register the extension; list ``"trajgap.compare.sphinx"`` in ``extensions`` of conf.py.
 
@@ -80,4 +76,4 @@ def setup(app: Sphinx) -> ExtensionMetadata:
 
 
 def _add_static(app: Any) -> None:
-    app.config.html_static_path.append(str(STATIC))
+    app.config.html_static_path.append(str(Path(__file__).parent / "static"))

@@ -5,33 +5,26 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from docutils import nodes
-from docutils.parsers.rst import directives
-from sphinx.util.docutils import SphinxDirective
 
 from ...heuristics import KINDS
-from ..blocks import Block, Drawn, Grid, Prose, board_table, table
+from ..blocks import Grid, table
 from ..gaps import (
     DESCENT,
     LADDER,
-    SIZES,
     SOLVED,
     Board,
     Ranked,
     Summary,
     boards,
-    curve_of,
     leaderboard_rows,
-    size_of,
     success_interval,
 )
-from ..pictures import BoardPanel, Picture, leaderboard_picture, svg
-from .docutils_nodes import nodes_of
+from ..pictures import BoardPanel, Picture, leaderboard_picture
 
-_HANDLINGS = {
+HANDLINGS = {
     "death-penalty": "Death penalty: a motion beyond a limit is rejected",
     "stretch": "Stretch: a motion beyond a limit is slowed down until it keeps every limit",
 }
@@ -117,64 +110,28 @@ def _panel(board: Board) -> BoardPanel:
     }
     names = {one.optimizer for one in marked.values()}
     return BoardPanel(
-        _HANDLINGS[board.handling],
+        HANDLINGS[board.handling],
         {label: one.within for label, one in marked.items()},
         [one.within for one in standings if one.optimizer not in names],
     )
 
 
-class Leaderboard(SphinxDirective):
-    """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling."""
-
-    required_arguments = 1
-    option_spec: ClassVar[dict[str, Any]] = {
-        "budget": directives.positive_int,
-        "handling": directives.unchanged,
-    }
-
-    def run(self) -> list[nodes.Node]:
-        """The part that is asked for."""
-        budget = self.options.get("budget", 1000)
-        handling = self.options.get("handling", "death-penalty")
-        both = [board_of(one, budget) for one in _HANDLINGS]
-        match self.arguments[0]:
-            case "said":
-                found = nodes.bullet_list()
-                found += [nodes.list_item("", *nodes_of([Prose(one)])) for one in said(*both)]
-                return [found]
-            case "picture":
-                made = boards_drawn(both)
-                return nodes_of([Drawn("leaderboard", svg(made), made.title)])
-            case "table":
-                return nodes_of(self._table(board_of(handling, budget)))
-            case "curves":
-                return nodes_of([self._parts(board_of(handling, budget), curve_of, str)])
-            case "sizes":
-                return nodes_of([self._parts(board_of(handling, budget), size_of, SIZES.index)])
-        raise self.error("trajgap-leaderboard: say said, picture, table, curves or sizes")
-
-    def _table(self, board: Board) -> list[Block]:
-        missing = f"Not complete yet: {', '.join(board.missing)}."
-        return [board_table(board), *([Prose(missing)] if board.missing else [])]
-
-    def _parts(
-        self, board: Board, part_of: Callable[[str], str], order: Callable[[str], Any]
-    ) -> Grid:
-        """Share of runs within 0.1 % in each class of instances."""
-        classes = {problem: part_of(problem) for problem in board.problems}
-        parts = sorted(set(classes.values()), key=order)
-        found: dict[tuple[str, str], list[Summary]] = {}
-        for row in leaderboard_rows():
-            asked = (row.budget, row.handling) == (board.budget, board.handling)
-            if asked and row.problem in classes:
-                found.setdefault((row.optimizer, classes[row.problem]), []).append(row)
-        rows = [
-            [one.optimizer, *(_share_of(found[one.optimizer, part]) for part in parts)]
-            for one in board.standings
-        ]
-        counts = Counter(classes.values())
-        heads = [f"{part} ({counts[part]})" for part in parts]
-        return table(("optimiser", *heads), rows, "", "sortable")
+def board_parts(board: Board, part_of: Callable[[str], str], order: Callable[[str], Any]) -> Grid:
+    """Share of runs within 0.1 % in each class of instances."""
+    classes = {problem: part_of(problem) for problem in board.problems}
+    parts = sorted(set(classes.values()), key=order)
+    found: dict[tuple[str, str], list[Summary]] = {}
+    for row in leaderboard_rows():
+        asked = (row.budget, row.handling) == (board.budget, board.handling)
+        if asked and row.problem in classes:
+            found.setdefault((row.optimizer, classes[row.problem]), []).append(row)
+    rows = [
+        [one.optimizer, *(_share_of(found[one.optimizer, part]) for part in parts)]
+        for one in board.standings
+    ]
+    counts = Counter(classes.values())
+    heads = [f"{part} ({counts[part]})" for part in parts]
+    return table(("optimiser", *heads), rows, "", "sortable")
 
 
 def _share_of(rows: Sequence[Summary]) -> str:

@@ -26,8 +26,6 @@ from .results import Results
 
 _NONE = "–"
 """A cell without a value."""
-_OPEN = ClaimVerdict.NOT_CHECKABLE
-"""The word of claims on which nothing is decided."""
 COLUMNS = (
     "paper",
     "printed, s",
@@ -138,7 +136,7 @@ def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
 def paper_row(name: str, case: AuditedCase) -> PaperRow:
     """One audited case as a row of the table."""
     counts = Counter(one.verdict for one in case.verdicts)
-    decided = counts.total() - counts[_OPEN]
+    decided = counts.total() - counts[ClaimVerdict.NOT_CHECKABLE]
     against = decided > counts[ClaimVerdict.SUPPORTED]
     return PaperRow(
         name,
@@ -158,7 +156,7 @@ def _found(case: AuditedCase, counts: Counter[ClaimVerdict], against: bool) -> s
     if case.card.errors:
         return case.card.errors[0]
     if against:
-        found = every - supported - counts[_OPEN]
+        found = every - supported - counts[ClaimVerdict.NOT_CHECKABLE]
         return f"{found} of {every} claims do not hold as printed or depend on the reading."
     if not supported:
         return "No claim can be checked from the text."

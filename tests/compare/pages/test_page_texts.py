@@ -28,8 +28,8 @@ from trajgap.compare.documents import (
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.environment import environment, style
-from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.rendering import environment, style
+from trajgap.compare.pages.rendering import markdown
 from trajgap.compare.pages.motions_shown import _totals
 from trajgap.compare.pages.numbers import where_time_goes
 from trajgap.compare.pages.units import both_units

@@ -21,7 +21,7 @@ from trajgap.compare.documents import (
     Keeping,
     qualified,
 )
-from trajgap.compare.pages.markdown_text import plain
+from trajgap.compare.pages.rendering import plain
 from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence
 

@@ -12,7 +12,7 @@ from trajgap.compare.documents import Step, Why
 from trajgap.compare.pictures.drawing import DARK, THEME, Picture, svg
 from trajgap.compare.pictures.searches import convergence, endings
 from trajgap.compare.pictures.totals_map import landscape, tight_total
-from trajgap.compare.pictures.waterfall import waterfall_picture
+from trajgap.compare.pictures.bars import waterfall_picture
 from trajgap.heuristics import JointRuns, Run
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import Limits, Problem, TrajgapError, check, cubic_spline, quintic_spline

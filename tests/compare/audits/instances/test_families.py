@@ -28,7 +28,7 @@ from trajgap.compare.audits.instances.result import (
 from trajgap.compare.audits.rules.on_instances import _under, judge_instances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Effect, Procedure, json_text
-from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.rendering import markdown
 from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.instances import instances_picture

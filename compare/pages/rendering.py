@@ -1,16 +1,67 @@
-"""A report page as Markdown."""
+"""A report page as HTML, and as Markdown."""
 
 from __future__ import annotations
 
 import re
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 from ...problem import visible
-from ..blocks import Block, CardShown, Claimed, Drawn, Folded, Grid, Page, Prose, Terms
+from ..blocks import Block, CardShown, Claimed, Drawn, Folded, Grid, Page, Prose, Terms, link, slug
+from ..pictures import embedded
 
-_SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
-"""Characters that may begin markup anywhere."""
-_LIST = re.compile(r"^(\s*)([-+]|\d+[.)])(\s)", re.MULTILINE)
-"""What begins an item of a list, at the start of a line."""
+_TEMPLATES = Path(__file__).parent / "templates"
+"""Where the pages' templates and style lie, as package data."""
+
+
+def style() -> str:
+    """The style sheet that every page carries."""
+    return (_TEMPLATES / "style.css").read_text(encoding="utf-8")
+
+
+@lru_cache(maxsize=1)
+def environment() -> Environment:
+    """The templates, with what they call."""
+    found = Environment(
+        loader=FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        finalize=_visible,
+    )
+    found.globals["zip"] = zip
+    found.filters["slug"] = slug
+    found.filters["link"] = link
+    found.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
+    found.filters["unescaped"] = Markup
+    return found
+
+
+def _visible(value: object) -> object:
+    """What a page prints: plain text with every character visible, markup of ours as it is."""
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return visible(value, keep="\n")
+    return value
+
+
+def fill_template(path: Path, **values: Any) -> str:
+    """Fill a template that lies elsewhere, with the style and the safety of all pages.
+
+    `**values`: what it names; ``style`` is the style sheet.
+    """
+    shapes = environment().overlay(loader=FileSystemLoader(path.parent))
+    return shapes.get_template(path.name).render(style=style(), **values)
+
+
+def page_text(page: Page) -> str:
+    """HTML of one page that stands by itself."""
+    return environment().get_template("case.html").render(page=page, style=style())
 
 
 def markdown(page: Page) -> str:
@@ -28,9 +79,9 @@ def markdown(page: Page) -> str:
 
 
 def plain(text: str) -> str:
-    """Text in which nothing is markup."""
-    escaped = _SPECIAL.sub(r"\\\1", visible(text, keep="\n"))
-    return _LIST.sub(r"\1\\\2\3", escaped)
+    """Text in which nothing is markup: neither a sign, nor what begins an item of a list."""
+    escaped = re.sub(r"([\\`*_\[\]<>#|~$&])", r"\\\1", visible(text, keep="\n"))
+    return re.sub(r"(?m)^(\s*)([-+]|\d+[.)])(\s)", r"\1\\\2\3", escaped)
 
 
 def _block(page: Page, block: Block) -> str:
