@@ -1,4 +1,4 @@
-"""The form, the pages that it leads to, and the server of both on this machine alone."""
+"""The form, its curves, the pages that it leads to, and the server on this machine alone."""
 
 from __future__ import annotations
 
@@ -6,19 +6,83 @@ import logging
 import threading
 from collections import OrderedDict
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...problem import CHOICES, QUANTITIES, PackageError, TrajgapError
+import numpy as np
+from markupsafe import Markup
+
+from ...problem import CHOICES, QUANTITIES, Array, PackageError, TrajgapError, fit
 from ...problem.motions import UNITS, Interpolation
 from ..audits import audit
+from ..blocks import GLOSSARY
 from ..pages import fill_template, page_files
-from .curves_shown import offered_curves
 from .submitted import FormError, case_of, judge_motion
 
 if TYPE_CHECKING:
     from flask import Flask, Response
     from werkzeug.serving import BaseWSGIServer
+
+_WIDTH, _HEIGHT = 160.0, 84.0
+"""Size of a picture; two stand beside each other at 390 px."""
+
+
+@dataclass(frozen=True)
+class OfferedCurve:
+    """A curve of the form: family, name, what tells it apart, and its picture."""
+
+    family: str
+    name: str
+    trait: str
+    picture: Markup
+
+
+@cache
+def offered_curves() -> tuple[OfferedCurve, ...]:
+    """The curves of the form, drawn once a process."""
+    # Family, as case files name it, its name, and what tells it apart.
+    offered = (
+        ("", "Usual for the table", "3-5-3 for four way-points, else C2 cubics"),
+        ("3-5-3", "3-5-3 polynomials", "acceleration continuous; four way-points"),
+        ("cubic-spline", "Cubic spline", "acceleration continuous, not 0 at the ends"),
+        ("cubic-spline-virtual", "Cubic spline, two virtual points", "acceleration 0 at the ends"),
+        ("quintic-spline", "Quintic spline", "jerk and snap continuous"),
+        ("rest-to-rest", "Quintic, at rest at each way-point", "stops at every way-point"),
+    )
+    return tuple(OfferedCurve(*one, _picture(one[0]) if one[0] else Markup()) for one in offered)
+
+
+def _picture(family: str) -> Markup:
+    units = {"position_unit": "rad", "jerk": "1", "jerk_unit": "rad/s^3"}
+    # Way-points of the pictures, rad: unequal steps and a reversal.
+    points = "a\n0\n0.7\n1.2\n0.5"
+    _, case = case_of({"table": points, "family": family, **units})
+    problem = case.problem()
+    motion = fit(problem.curve, problem.waypoints, np.full(problem.segments, 1.0))
+    times = np.linspace(0.0, motion.total_time, 161)[1:-1]
+    angle, acceleration = motion(times)[:, 0], motion(times, 2)[:, 0]
+
+    def placed(at: Array, values: Array, of: Array) -> list[tuple[float, float]]:
+        low, high = of.min(), of.max()
+        across, down = at / motion.total_time, (high - values) / (high - low)
+        return list(zip(_WIDTH * across, _HEIGHT * down, strict=True))
+
+    first, second = (
+        " ".join(f"{x:.1f},{y:.1f}" for x, y in placed(times, values, values))
+        for values in (angle, acceleration)
+    )
+    dots = "".join(
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.4"/>'
+        for x, y in placed(motion.breaks, motion(motion.breaks)[:, 0], angle)
+    )
+    return Markup(
+        f'<svg viewBox="-4 -4 {_WIDTH + 8:g} {_HEIGHT + 8:g}" role="img" aria-hidden="true">'
+        f'<polyline class="second" points="{second}"/>'
+        f'<polyline class="first" points="{first}"/>{dots}</svg>'
+    )
+
 
 ADDRESS = "127.0.0.1"
 """Where the server listens: no other machine reaches it."""
@@ -93,7 +157,9 @@ def make_form() -> Flask:
         try:
             text, case = case_of(fields)
             with one_at_a_time:
-                files = page_files(audit(case).cases[0], _links(case.id))
+                save = "Save the case file", f"{case.id}.toml"
+                links = ("New audit", "/"), save, ("Glossary", GLOSSARY)
+                files = page_files(audit(case).cases[0], links)
                 number = next(reversed(kept), 0) + 1
                 kept[number] = files | {f"{case.id}.toml": text}
                 if len(kept) > _PAGES_KEPT:
@@ -135,14 +201,6 @@ def make_form() -> Flask:
         return form_page({}, {"motion": f"larger than {_LARGEST // 10**6} MB"}), 413
 
     return app
-
-
-def _links(name: str) -> tuple[tuple[str, str], ...]:
-    return (
-        ("New audit", "/"),
-        ("Save the case file", f"{name}.toml"),
-        ("Glossary", "glossary.html"),
-    )
 
 
 def form_page(

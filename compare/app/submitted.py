@@ -109,7 +109,9 @@ def judge_motion(
         try:
             read = read_motion(path, [fields.get("motion_unit", "rad")])
         except (TrajgapError, PackageError, ValueError) as error:
-            raise FormError({"motion": _told(error, path)}) from None
+            # Without the path of a file that the browser sent.
+            said = str(error).replace(f"{path}: ", "").replace(str(path), "the file")
+            raise FormError({"motion": " ".join(said.split())}) from None
     factors = factors_of(read.units, len(read.joints), "motion_unit")
     try:
         stated = replace(limits_of_flags(given, read.joints, factors), source="the form")
@@ -128,8 +130,3 @@ def judge_motion(
         return check_motion(interpolated(read.content, how), limits), how
     except (TrajgapError, ValueError) as error:
         raise FormError({"between": str(error).replace("--", "")}) from None
-
-
-def _told(error: Exception, path: Path) -> str:
-    """The message without the path of a file that the browser sent."""
-    return " ".join(str(error).replace(f"{path}: ", "").replace(str(path), "the file").split())

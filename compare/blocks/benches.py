@@ -1,12 +1,13 @@
-"""What runs say of optimisers: on one problem, over all of a bench, and on the leaderboard."""
+"""What runs say of optimisers, and what the suite says of its instances."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
 from ...problem import shown_bound
+from ...problem.suite import BenchmarkInstance
 from ..documents import (
     BENCH_COLUMNS,
     SHOWN_GAPS,
@@ -19,7 +20,7 @@ from ..documents import (
     value_or_none,
 )
 from ..gaps import Board, Ranked
-from .tree import Block, Grid, Prose, table
+from .tree import Block, Cell, Grid, Prose, Terms, badge, code, table
 
 ONE_BY_ONE = 6
 """Problems up to which each has its own tables; of more there is one table, and files have all."""
@@ -27,40 +28,23 @@ ONE_BY_ONE = 6
 
 def overall_blocks(standings: Sequence[OverallStanding]) -> tuple[Block, ...]:
     """Which optimiser comes within 1 % most often, and a row for each."""
-    rows = []
+    rows, within = [], []
     for one in standings:
         shown = [t for t in one.targets if t.gap in SHOWN_GAPS]
         gaps = gap_cell(one.median), gap_cell(one.worst)
         shares = [f"{100 * target.rate:.0f} %" for target in shown]
         solved = [f"{target.solved} of {one.problems}" for target in shown]
         rows.append((one.optimizer, *gaps, one.first, *shares, *solved))
-    columns = (
-        "optimizer",
-        ">median of median gaps",
-        ">worst",
-        ">first on",
-        ">runs ≤ 1 %",
-        ">runs ≤ 0.01 %",
-        ">solved to 1 %",
-        ">solved to 0.01 %",
-    )
-    return Prose(_most_solved(standings), "lead"), table(columns, rows)
-
-
-def _most_solved(standings: Sequence[OverallStanding]) -> str:
-    """Which optimiser comes within 1 % most often, in a sentence."""
-    first = standings[0]
-    share, *others = [
-        f"{100 * target.rate:.0f} %"
-        for one in standings
-        for target in one.targets
-        if target.gap == SHOWN_GAPS[0]
-    ]
+        within.append((one.optimizer, shares[0]))
+    (first, share), *others = within
     said = (
-        f"Within 1 % of the optimum most often: {first.optimizer}, in {share} of its runs over "
-        f"{first.problems} problems"
+        f"Within 1 % of the optimum most often: {first}, in {share} of its runs over "
+        f"{standings[0].problems} problems"
     )
-    return said + (f"; next {standings[1].optimizer} with {others[0]}." if others else ".")
+    said += "; next {} with {}".format(*others[0]) if others else ""
+    columns = ("optimizer", ">median of median gaps", ">worst", ">first on", ">runs ≤ 1 %",
+               ">runs ≤ 0.01 %", ">solved to 1 %", ">solved to 0.01 %")  # fmt: skip
+    return Prose(f"{said}.", "lead"), table(columns, rows)
 
 
 def bench_blocks(result: BenchResult) -> tuple[Block, ...]:
@@ -129,3 +113,67 @@ def _evaluations(ends: tuple[float, float, float]) -> str:
     """Expected evaluations with their interval; an end without bound is ∞."""
     value, low, high = ("∞" if np.isinf(end) else f"{end:.0f}" for end in ends)
     return "–" if value == "∞" else f"{value}\n({low} to {high})"
+
+
+def suite_table(
+    instances: Iterable[BenchmarkInstance],
+    place: str = "",
+    digits: int | None = None,
+    brief: bool = False,
+) -> Grid:
+    """A row for each instance.
+
+    `place`: what the name of an instance points to, with {} for the name. `digits`: of bounds,
+    rounded outwards; all of them by default. `brief`: whether limits are their first letters, and
+    how hard an instance is has no room.
+    """
+    rows = []
+    for one in instances:
+        bounds = ("lower", one.lower), ("upper", one.upper)
+        hard = one.hardness
+        rows.append(
+            (
+                Cell(one.name, target=place.format(one.name)),
+                one.curve,
+                one.segments,
+                one.joints,
+                ", ".join(limit[0] if brief else limit for limit in one.tight),
+                *(shown_bound(end, at, digits=digits) if digits else repr(end)
+                  for at, end in bounds),
+                f"{one.width:.1e}",
+                badge(str(one.evidence)),
+                hard and hard.basins,
+                hard and f"{hard.feasible_share:.2%}",
+            )
+        )  # fmt: skip
+    columns = ("instance", "curve", ">segments", ">joints", "tight in", ">lower, s", ">upper, s",
+               ">width", "evidence", ">basins", ">feasible")  # fmt: skip
+    found = table(columns, rows, "", "sortable")
+    return found.without(*(9, 10)) if brief else found
+
+
+def instance_terms(one: BenchmarkInstance) -> Terms:
+    """What is known of an instance, and how hard it is."""
+    found: list[tuple[str, str | Cell]] = [
+        ("curve", f"{one.curve}, {one.segments} segments, {one.joints} joints"),
+        ("optimum, s", f"between {one.lower!r} and {one.upper!r}"),
+        ("relative width", f"{one.width:.1e}, {one.evidence}"),
+        ("lower bound over", one.lower_subject),
+        ("best known total", "proved feasible" if one.upper_proved else
+         "feasible by trajgap's check"),
+        ("best known durations, s", ", ".join(f"{h:.9g}" for h in one.durations)),
+        ("tight in", ", ".join(one.tight)),
+        ("made by", code(one.command)),
+    ]  # fmt: skip
+    hard = one.hardness
+    if hard is not None:
+        runs = f"of {hard.baseline_runs} runs of {hard.baseline_budget} evaluations"
+        found += [
+            ("basins", f"{hard.basins} found by {hard.starts} random starts; "
+             f"{hard.best_basin_share:.0%} of them reach the best"),
+            ("feasible share", f"{hard.feasible_share:.2%} of {hard.drawn} durations drawn "
+             "uniformly within their bounds"),
+            *((f"success of {name}", f"{rate:.0%} {runs} end within 1 %")
+              for name, rate in hard.baselines.items()),
+        ]  # fmt: skip
+    return Terms(tuple(found))

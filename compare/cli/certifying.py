@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import signal
 from collections.abc import Callable, Iterator, Sequence
@@ -15,7 +14,6 @@ from typing import Any
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import StateFile, certificate_text, covered, fits, read_state, state_document
 from ...problem import Case, CaseError, Coupling, TrajgapError, file_name, shown_bound
-from ...problem.cases import case_files
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -32,6 +30,7 @@ from ..audits import in_words
 from ..blocks import Block, Prose
 from ..documents import CertifiedResult, CertifyDocument, Why, certify_result, json_text
 from .input import Selected, naming, select
+from .motion_results import by_question
 from .output import (
     Steps,
     check_certificates,
@@ -43,7 +42,6 @@ from .output import (
     replace_output,
     say,
 )
-from .result_tables import by_question
 
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
@@ -120,10 +118,11 @@ def certify_case(
                     break
                 step(one.words)
                 clock = Clock(seconds + 1.0)  # of a second more to judge an earlier certificate
-                found: Certified | str = (
-                    one.problem
-                    if isinstance(one.problem, str)
-                    else certify(
+                found: Certified | str
+                if isinstance(one.problem, str):
+                    found = one.problem
+                else:
+                    found = certify(
                         one.problem,
                         subject=subject,
                         gap=gap,
@@ -134,7 +133,6 @@ def certify_case(
                         workers=workers,
                         cache=cache,
                     )
-                )
                 kept += not isinstance(found, str) and found.kept
                 unsettled |= isinstance(found, str) or found.outcome not in settled
                 files = _written(folder, one, found, clock)
@@ -154,18 +152,14 @@ def certify_case(
 
 def read_certificates(folder: Path) -> list[dict[str, Any]]:
     """The certificates in a folder; other files of it are left alone."""
+    option = "--certificates"
     if not folder.is_dir():
-        raise CaseError(
-            str(folder), "--certificates", "is not a folder; give the one with your files"
-        )
+        raise CaseError(str(folder), option, "is not a folder; give the one with your files")
     documents = [_read(path) for path in sorted(folder.glob("*.json"))]
     found = [one for one in documents if one.get("format") == CERTIFICATE_FORMAT]
     if not found:
-        raise CaseError(
-            str(folder),
-            "--certificates",
-            f"holds no {CERTIFICATE_FORMAT}; make one with solve --certify",
-        )
+        why = f"holds no {CERTIFICATE_FORMAT}; make one with solve --certify"
+        raise CaseError(str(folder), option, why)
     return found
 
 
@@ -185,10 +179,9 @@ def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Ques
     statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
     said = in_words(case, one.problem_id, one.reading_id)
-    ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
-    labels: list[str | None] = [None]
-    if coupling is Coupling.PER_JOINT:
-        labels = list(one.problem.joints)
+    ids = (case.id, one.problem_id, one.reading_id)
+    alone = coupling is Coupling.PER_JOINT
+    labels: Sequence[str | None] = one.problem.joints if alone else [None]
     for j, label in enumerate(labels):
         own = name if label is None else f"{name}.joint-{label}"
         words = said if label is None else f"joint {label} alone; {said}"
@@ -200,17 +193,7 @@ def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Ques
             raise
         except TrajgapError as error:
             exact = str(error)
-        yield Question(own, one, CertifiedQuestion(*ids, label, content), exact, words)
-
-
-def _hash(case: Case) -> str | None:
-    """SHA-256 of a case file; None if it cannot be read any more."""
-    known = case_files(case.file)
-    path = known.file(case.file) if case.file in known.ids() else Path(case.file)
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
-        return None
+        yield Question(own, one, CertifiedQuestion(*ids, label, case.sha256), exact, words)
 
 
 def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, StateFile]:

@@ -26,19 +26,10 @@ from ..documents import (
     reason,
 )
 from . import options as given
-from .input import (
-    Selected,
-    duration_box,
-    naming,
-    one_joint,
-    read_case,
-    read_durations,
-    select,
-    waypoint_box,
-)
+from .input import Selected, duration_box, naming, read_case, read_durations, select
 from .motion_checking import MotionOptions, check_file
+from .motion_results import by_result, place, reasons
 from .output import answer, progress
-from .result_tables import by_result, place, reasons
 
 
 class MissingOption(typer.BadParameter):
@@ -157,13 +148,15 @@ def _check_durations(
 
 
 def _checked(case: Case, one: Selected, box: RoundingBox) -> CheckResult:
-    problem, points = one.problem, waypoint_box(case, one)
+    problem, sides = one.problem, case.waypoint_box(one.problem_id, one.reading_id)
+    points = RoundingBox(problem.waypoints, *sides)
     joints: list[tuple[str, Check, RoundingVerdict]] = []
     loose = case.statement(one.problem_id, one.reading_id).loose_ends
     if problem.coupling is Coupling.PER_JOINT:
         for j, label in enumerate(problem.joints):
-            alone = problem.joint(j)
-            rounding = judge_rounding(alone, box, one_joint(points, j), loose_ends=loose)
+            alone, own = problem.joint(j), [j]
+            column = RoundingBox(points.value[:, own], points.lower[:, own], points.upper[:, own])
+            rounding = judge_rounding(alone, box, column, loose_ends=loose)
             joints.append((label, judge(alone, box.value), rounding))
     return check_result(
         case.id,

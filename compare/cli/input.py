@@ -9,17 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import (
-    Array,
-    Case,
-    CaseError,
-    Printed,
-    Problem,
-    TrajgapError,
-    load_case,
-    read_float,
-    to_si,
-)
+from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, read_float, to_si
 from ..audits import RoundingBox
 
 
@@ -136,18 +126,3 @@ def duration_box(case: Case, selected: Selected, printed: Sequence[Printed]) -> 
         np.array([m.lower for m in measured]),
         np.array([m.upper for m in measured]),
     )
-
-
-def waypoint_box(case: Case, selected: Selected) -> RoundingBox:
-    """The problem's way-points, in rad: the numbers, and the bounds of what rounds to them."""
-    lower, upper = case.waypoint_box(selected.problem_id, selected.reading_id)
-    return RoundingBox(selected.problem.waypoints, lower, upper)
-
-
-def one_joint(box: RoundingBox, joint: int) -> RoundingBox:
-    """The column of one joint."""
-
-    def column(array: Array) -> Array:
-        return array[:, joint : joint + 1]
-
-    return RoundingBox(column(box.value), column(box.lower), column(box.upper))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -156,7 +157,10 @@ def _ask(quantity: str, table: str) -> str:
         if interactive:
             sys.stderr.write(f"unit of {quantity} in {table} ({shown}): ")
             sys.stderr.flush()
-        line = _line()
+        line = ""  # as where standard input has ended
+        if sys.stdin is not None:
+            with suppress(OSError):
+                line = sys.stdin.readline()
         answer = line.strip() or default or ""
         if _known(answer, quantity) or not line or not interactive:
             return answer
@@ -171,11 +175,3 @@ def _known(answer: str, quantity: str) -> bool:
 
 def _interactive() -> bool:
     return sys.stdin is not None and sys.stdin.isatty()
-
-
-def _line() -> str:
-    """The next line of standard input; empty if it has ended, or cannot be read at all."""
-    try:
-        return "" if sys.stdin is None else sys.stdin.readline()
-    except OSError:
-        return ""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -20,7 +19,7 @@ from ...nlp import (
     with_other_route,
 )
 from ...nlp.retiming import Retiming, retime
-from ...problem import Case, Coupling, Problem, fit, shown_bound
+from ...problem import Case, CaseError, Coupling, Problem, fit, shown_bound
 from ...verify import Subject
 from ..audits import Pair, Study, in_words
 from ..blocks import Block, Prose, seconds, table
@@ -38,16 +37,9 @@ from . import options as given
 from .certifying import certify_case
 from .input import Selected, naming, read_case, select
 from .motion_checking import MotionOptions
+from .motion_results import by_result, place, reasons
 from .output import emit, new_output, progress
-from .result_tables import by_result, place, reasons
-from .solve_files import (
-    AskedSamples,
-    asked_samples,
-    check_one_motion,
-    points_case,
-    write_motion,
-    written_lines,
-)
+from .solve_files import AskedSamples, points_case, write_motion, written_lines
 
 
 def solve(
@@ -166,7 +158,7 @@ def solve(
                 raise typer.BadParameter(f"{name} needs --certify")
         if samples is None and lone:
             raise typer.BadParameter(f"{lone[0]} needs --samples")
-        asked = None if samples is None else asked_samples(samples, rate, form, retimed)
+        asked = None if samples is None else AskedSamples.of(samples, rate, form, retimed)
         return _solve_case(
             read, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
         )
@@ -217,8 +209,10 @@ def _solve_case(
 ) -> int:
     """Solve each selected problem and reading; write the motion of the first if asked to."""
     selected = select(case, problem, reading, coupling)
-    if asked is not None:
-        check_one_motion(case, selected)
+    problems = list(dict.fromkeys(one.problem_id for one in selected))
+    if asked is not None and len(problems) > 1:  # a file holds one motion, of the first reading
+        why = f"{len(problems)} problems; add --problem {problems[0]}"
+        raise CaseError(case.file, "--samples", why)
     samples_file = None if asked is None else asked.file
     with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
         results, written = [], None
@@ -284,18 +278,17 @@ def _tables(document: SolveDocument, case: Case) -> list[Block]:
     columns = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
     parts += by_result(results, columns, _cells, "longest", case)
     parts += [Prose(said) for result in results for said in _procedure(result, case)]
-    active = [
-        (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
-        for r, name in ((r, in_words(case, r.problem, r.reading)) for r in results)
-        for a in r.active
-    ]
+    active, above = [], ""
+    for r in results:
+        name = in_words(case, r.problem, r.reading)
+        for a in r.active:
+            cells = (place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
+            # A name that repeats the one above stays blank.
+            active.append(("" if name == above else name, *cells) if len(results) > 1 else cells)
+            above = name
     if active:
         limits = ("limit reached", ">multiplier s", ">10 % more changes s")
-        parts.append(
-            table(("~problem", *limits), _without_repeats(active, 1))
-            if len(results) > 1
-            else table(limits, [row[1:] for row in active])
-        )
+        parts.append(table(("~problem", *limits) if len(results) > 1 else limits, active))
     parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
     if document.written is not None:
@@ -327,34 +320,21 @@ def _procedure(result: SolveResult, case: Case) -> list[str]:
         return []
     under = in_words(case, result.problem, result.reading)
     name = f"{under}: longest per segment"
-    shared = result.shared
-    together = [] if shared is None else [f"{under}: {_together(shared)}"]
+    lines = []
+    if result.shared is not None:
+        shared = result.shared
+        durations = " ".join(f"{d:.4f}" for d in value_or_none(shared.segment_durations) or ())
+        beside = f" ({durations} s)" if durations else ""
+        lines.append(
+            f"{under}: all joints with the same durations: {shared.status}, "
+            f"{seconds(shared.total_time)} s, {shared.evidence}{beside}"
+        )
     if isinstance(longest.verdict, Why):
-        return [*together, f"{name}: none, {longest.verdict}"]
-    lines = [*together, f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
+        return [*lines, f"{name}: none, {longest.verdict}"]
+    lines.append(f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s")
     for span in longest.ranges:
         lines.append(
             f"  {span.lowest:.6f} to {span.highest:.6f} s while each joint stays within "
             f"{span.slack:g} s of its own optimum"
         )
     return lines
-
-
-def _together(shared: Answer) -> str:
-    """The optimum with durations that all joints share."""
-    durations = " ".join(f"{d:.4f}" for d in value_or_none(shared.segment_durations) or ())
-    return (
-        f"all joints with the same durations: {shared.status}, {seconds(shared.total_time)} s, "
-        f"{shared.evidence}" + (f" ({durations} s)" if durations else "")
-    )
-
-
-def _without_repeats(rows: Iterable[Sequence[object]], count: int) -> list[Sequence[object]]:
-    """Blank the first cells of a row where they repeat those of the row above."""
-    shown: list[Sequence[object]] = []
-    above: Sequence[object] = ()
-    for row in rows:
-        same = list(row[:count]) == list(above[:count])
-        shown.append((*("" for _ in range(count)), *row[count:]) if same else row)
-        above = row
-    return shown

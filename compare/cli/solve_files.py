@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +46,8 @@ def points_case(
         limits_of=limits_of_table(source, options),
         warn=lambda doubt: warn([doubt]),
     )
-    return parse_case(text, source)
+    hashed = sha256(Path(source).read_bytes()).hexdigest()
+    return replace(parse_case(text, source), sha256=hashed)
 
 
 def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str, ...]], FileLimits]:
@@ -92,35 +94,20 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class AskedSamples:
-    """What is to be written."""
+    """What is to be written; 500 rows a second, as arms of today are commanded, by default."""
 
     file: Path
     rate: float
     form: MotionForm
-    retimed: bool = False
+    retimed: bool
 
-
-def asked_samples(
-    file: Path, rate: float | None, form: str | None, retimed: bool = False
-) -> AskedSamples:
-    """What the command line asks to be written."""
-    try:
-        wanted = MotionForm(form or "csv")
-    except ValueError:
-        known = ", ".join(MotionForm)
-        raise CaseError("--format", "", f"{form!r} is unknown; use {known}") from None
-    # Rows a second by default: what arms of today are commanded at.
-    usual = 500.0
-    return AskedSamples(file, usual if rate is None else rate, wanted, retimed)
-
-
-def check_one_motion(case: Case, selected: Sequence[Selected]) -> None:
-    """Refuse more than one problem: a file holds one motion, of the first reading."""
-    problems = list(dict.fromkeys(one.problem_id for one in selected))
-    if len(problems) > 1:
-        raise CaseError(
-            case.file, "--samples", f"{len(problems)} problems; add --problem {problems[0]}"
-        )
+    @classmethod
+    def of(cls, file: Path, rate: float | None, form: str | None, retimed: bool) -> AskedSamples:
+        """What the command line asks for."""
+        if form not in (None, *MotionForm):
+            known = ", ".join(MotionForm)
+            raise CaseError("--format", "", f"{form!r} is unknown; use {known}")
+        return cls(file, 500.0 if rate is None else rate, MotionForm(form or "csv"), retimed)
 
 
 def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:
@@ -154,11 +141,9 @@ def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     result = written.result
     worst = value_or_none(result.worst)
     ratio = "" if worst is None else f", largest ratio {worst.ratio:.6f}"
-    lines = [
-        f"{written.file}: the motion as {written.form} "
-        f"({in_words(case, written.problem, written.reading)}); "
-        f"read back: {result.verdict}{ratio} ({result.concluded[0].rstrip('.')})"
-    ]
+    under = in_words(case, written.problem, written.reading)
+    back = f"read back: {result.verdict}{ratio} ({result.concluded[0].rstrip('.')})"
+    lines = [f"{written.file}: the motion as {written.form} ({under}); {back}"]
     if result.verdict != "pass" and written.form is MotionForm.CSV:
         lines.append(
             "a break of the curve lies between two rows; --format ros writes it as a point, and "

@@ -124,7 +124,10 @@ def study(
                     session = run_study(plan, kept, engine, retry=retry, progress=show)
         except KeyboardInterrupt:
             rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
-            print(f"\ntrajgap: {_interrupted(session, [*again, *rest])}", file=sys.stderr)
+            done = f"{session.resumed + session.run:,} of {session.total:,} runs are stored"
+            command = shlex.join([*again, *rest])
+            said = f"interrupted; {done}; `{command}` continues from there"
+            print(f"\ntrajgap: {said}", file=sys.stderr)
             return INTERRUPTED
         for one in exports:
             export_rows(study_rows(plan, kept), one)
@@ -156,14 +159,6 @@ def _going(now: StudySession, seconds: float) -> str:
     return words + (f", {now.failed:,} failed" if now.failed else "")
 
 
-def _interrupted(session: StudySession, again: Sequence[str]) -> str:
-    done = session.resumed + session.run
-    return (
-        f"interrupted; {done:,} of {session.total:,} runs are stored; `{shlex.join(again)}` "
-        "continues from there"
-    )
-
-
 def _summary(
     plan: StudyPlan,
     kept: Store,
@@ -182,7 +177,9 @@ def _summary(
         never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
         optimizer, settings, handling, budget = named
-        said = optimizer, _readable(settings), handling, f"{budget:,}"
+        # Words that a narrow column can break between.
+        own = [f"{name} {json.dumps(value)}" for name, value in json.loads(settings).items()]
+        said = optimizer, ", ".join(own) or "its own", handling, f"{budget:,}"
         cells = (*said, len(runs), len(bad), passed, *_gaps(runs))
         found.setdefault((problem, reading), []).append(cells)
     parts: list[Block] = [
@@ -244,12 +241,6 @@ def _words(one: StudyProblem) -> str:
     """What a problem of a study is called."""
     joint = "" if one.joint is None else f"joint {one.joint} alone; "
     return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
-
-
-def _readable(settings: str) -> str:
-    """Settings of a row, which are JSON, in words that a narrow column can break between."""
-    each = json.loads(settings)
-    return ", ".join(f"{name} {json.dumps(value)}" for name, value in each.items()) or "its own"
 
 
 def _gaps(runs: Sequence[Row]) -> tuple[str, str]:

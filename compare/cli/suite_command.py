@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
@@ -60,7 +59,14 @@ def _suite(
     if not chosen:
         known = ", ".join(sorted({one.curve for one in list_instances()}))
         raise CaseError("suite", "--curve", f"no curve is called {curve!r}; known: {known}")
-    answer(lambda: suite_document(chosen), lambda shown: _table(shown, chosen), as_json, out)
+    certified = sum(one.evidence == "certified" for one in chosen)
+
+    def summary(document: SuiteDocument) -> list[Block]:
+        many = f"{len(chosen)} instances, {certified} certified to 1 % or better"
+        said = Prose(f"suite {document.version}: {many}")
+        return [suite_table(chosen, brief=True), said]
+
+    answer(lambda: suite_document(chosen), summary, as_json, out)
     return 0
 
 
@@ -117,14 +123,6 @@ def pages(out: Folder) -> int:
 
 _MARK = "suite.json"
 """The file by which a folder that was written so is known."""
-
-
-def _table(document: SuiteDocument, chosen: Sequence[BenchmarkInstance]) -> list[Block]:
-    certified = sum(one.evidence == "certified" for one in chosen)
-    said = (
-        f"suite {document.version}: {len(chosen)} instances, {certified} certified to 1 % or better"
-    )
-    return [suite_table(chosen, brief=True), Prose(said)]
 
 
 def _shown(document: SuiteShowDocument, one: BenchmarkInstance) -> list[Block]:

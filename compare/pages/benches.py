@@ -134,8 +134,10 @@ def _ends(at: str, rows: Mapping[str, Sequence[Row]], optimum: float, of: str) -
 
 def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
     first = results[0][0]
+    budgets = sorted({row.budget for _, runs in results for row in runs.rows})
+    ends = dict.fromkeys(f"{one:,}" for one in (budgets[0], budgets[-1]))
     trail = (
-        f"{_evaluations(results)} evaluations a run, {first.seeds} seeds. "
+        f"{' to '.join(ends)} evaluations a run, {first.seeds} seeds. "
         f"trajgap {package_version('trajgap')}."
     )
     links = (("JSON", _MARK), ("rows (CSV)", _FILES[2]))
@@ -149,12 +151,6 @@ def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
             for i, (result, runs) in enumerate(results)
         ]
     return Page("bench", title, (*sections, _reading()), trail=trail, links=links).filled
-
-
-def _evaluations(results: Sequence[tuple[BenchResult, Runs]]) -> str:
-    """Evaluations of each run, or from how many to how many."""
-    budgets = sorted({row.budget for _, runs in results for row in runs.rows})
-    return " to ".join(f"{one:,}" for one in dict.fromkeys((budgets[0], budgets[-1])))
 
 
 def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:

@@ -84,16 +84,15 @@ def _add(crate: Any, folder: Path, texts: dict[str, str], what: str) -> list[Any
 
 def _cases(report: AuditReport) -> Iterator[tuple[str, str]]:
     for one in report.cases:
-        if one.case.sha256 is None:
+        case = one.case
+        if case.sha256 is None:
             raise TrajgapError(
-                f"{one.case.id}: was not read from a file, but a crate contains case files"
+                f"{case.id}: was not read from a file, but a crate contains case files"
             )
-        text, digest = PUBLISHED.hashed(one.case.file)
-        if digest != one.case.sha256:
-            raise TrajgapError(
-                f"{one.case.file}: has changed since the audit began; audit it again"
-            )
-        yield f"cases/{file_name(one.case.id)}.toml", text
+        text, digest = PUBLISHED.hashed(case.file)
+        if digest != case.sha256:
+            raise TrajgapError(f"{case.file}: has changed since the audit began; audit it again")
+        yield f"cases/{file_name(case.id)}.toml", text
 
 
 def _certificates(report: AuditReport) -> Iterator[tuple[str, str]]:
@@ -123,13 +122,9 @@ def _tell(
     crate: Any, report: AuditReport, made: list[Provenance], inputs: list[Any], results: list[Any]
 ) -> None:
     """State which software made the report, from what, and which papers it is about."""
-    first = made[0]
-    software = {
-        "@id": "#trajgap",
-        "@type": "SoftwareApplication",
-        "name": "trajgap",
-        "softwareVersion": first.trajgap,
-    }
+    first, ended = made[0], crate.datePublished
+    software = {"@id": "#trajgap", "@type": "SoftwareApplication", "name": "trajgap"}
+    software["softwareVersion"] = first.trajgap
     if not isinstance(first.commit, Why):
         software["identifier"] = first.commit
     instrument = crate.add_jsonld(software)
@@ -140,9 +135,7 @@ def _tell(
             "@type": "CreateAction",
             "name": "Audit",
             "description": "; ".join(one.command for one in made),
-            "endTime": crate.datePublished.isoformat()
-            if hasattr(crate.datePublished, "isoformat")
-            else str(crate.datePublished),
+            "endTime": ended.isoformat() if hasattr(ended, "isoformat") else str(ended),
             "actionStatus": "http://schema.org/CompletedActionStatus",
         }
     )

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
-from ...problem import Array, TrajgapError, file_name, forward_kinematics, shown_bound, to_si
+from ...problem import Array, TrajgapError, forward_kinematics, shown_bound, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import PrintedRow, Study, place
 from ..audits.rules import has_vertices, vertices
 from ..blocks import Block, Folded, Section, table
 from ..pictures import (
+    drawn,
     jump_picture,
     polygon_picture,
     tent_picture,
@@ -22,15 +22,16 @@ from ..pictures import (
     velocity_jumps,
     workspace_picture,
 )
-from .motions_shown import alike, drawn, whole_rows
-from .numbers import noted, only_under
-from .units import both_units, paper_units
+from .motions_shown import alike, whole_rows
+from .numbers import both_units, noted, only_under, paper_units
 
 
 def exhibits_of_motion(study: Study) -> list[Section]:
     """Sections with workspace, control polygon and jumps; absent where there is none."""
+    printed = (rows for pair in study.main_pairs for rows in alike(whole_rows(study, pair)))
+    jumps = tuple(block for rows in printed for block in _jumps_of(study, rows))
     sections = (
-        Section("jumps", "Jumps of the velocity", tuple(_jumps(study)), folded=True),
+        Section("jumps", "Jumps of the velocity", jumps, folded=True),
         Section("control-polygon", "Control polygon", tuple(_polygons(study)), folded=True),
         Section("workspace", "Workspace of the robot", tuple(_workspaces(study)), folded=True),
     )
@@ -44,18 +45,10 @@ def exhibits_of_search(study: Study) -> list[Section]:
     return [Section("tent-map", title, blocks, folded=True)] if blocks else []
 
 
-# --- jumps ----------------------------------------------------------------------------------------
-
-
-def _jumps(study: Study) -> Iterator[Block]:
-    for pair in study.main_pairs:
-        for rows in alike(whole_rows(study, pair)):
-            yield from _jumps_of(study, pair.problem, [row.claim for row in rows])
-
-
 def _jumps_of(
-    study: Study, problem: str, claims: list[DurationsClaim | MaximumClaim]
+    study: Study, printed: list[PrintedRow[DurationsClaim | MaximumClaim]]
 ) -> Iterator[Block]:
+    problem, claims = printed[0].problem, [row.claim for row in printed]
     first = claims[0]
     rows = [PrintedRow(study, first, pair) for pair in study.pairs if pair.problem == problem]
     moved = [row for row in rows if row.unmoved is None]
@@ -65,38 +58,22 @@ def _jumps_of(
     row = jumping[0]
     statement, posed, durations = row.statement, study.problem(row.pair), row.durations.value
     names = "; ".join(dict.fromkeys(place(c) for c in claims))
-    picture = jump_picture(
-        posed,
-        durations,
-        title=f"Jumps of the velocity with the printed durations of {names}",
-        units=paper_units(statement),
-    )
+    title = f"Jumps of the velocity with the printed durations of {names}"
+    picture = jump_picture(posed, durations, title=title, units=paper_units(statement))
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
         f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
         f"{len(moved)} readings. Limits are judged inside the segments, separately from jumps."
     )
-    yield drawn(file_name("jumps", problem, first.id), picture, caption)
-    grid = tuple(
-        (
-            jump.joint,
-            jump.break_index,
-            f"{jump.time:.3f} s",
-            (
-                both_units(
-                    statement, "velocity", [jump.size], "+.6g", [statement.labels.index(jump.joint)]
-                )
-            ),
-        )
-        for jump in velocity_jumps(posed, durations)
-    )
+    yield drawn(picture, "jumps", problem, first.id, caption=caption)
+    grid = []
+    for jump in velocity_jumps(posed, durations):
+        joint = [statement.labels.index(jump.joint)]
+        size = both_units(statement, "velocity", [jump.size], "+.6g", joint)
+        grid.append((jump.joint, jump.break_index, f"{jump.time:.3f} s", size))
     columns = ("joint", ">break", ">time", ">velocity after less before")
-    yield Folded(
-        f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}", (table(columns, grid),)
-    )
-
-
-# --- control polygon ------------------------------------------------------------------------------
+    head = f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}"
+    yield Folded(head, (table(columns, grid),))
 
 
 def _polygons(study: Study) -> Iterator[Block]:
@@ -121,20 +98,11 @@ def _polygons(study: Study) -> Iterator[Block]:
             f"of both explains. No reading enters: {both} printed in one unit, and time is not "
             "involved."
         )
-        yield drawn(file_name("polygon", claim.id), picture, caption)
+        yield drawn(picture, "polygon", claim.id, caption=caption)
 
 
-# --- workspace ------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class _Path:
-    """Way-points in the base, m, with names, marks for those out of reach, and what to say."""
-
-    points: Array
-    labels: tuple[str, ...]
-    missed: tuple[bool, ...]
-    said: str
+_Path = tuple[Array, tuple[str, ...], tuple[bool, ...], str]
+"""Way-points in the base, m, with names, marks for those out of reach, and what to say."""
 
 
 def _workspaces(study: Study) -> Iterator[Block]:
@@ -153,24 +121,17 @@ def _workspaces(study: Study) -> Iterator[Block]:
         # A joint that slides without bounds has no workspace to sample.
         return
     path = _printed_path(study, dh, chain) or _joint_path(study, chain)
-    picture = workspace_picture(
-        cloud,
-        waypoints=path.points if path else None,
-        labels=path.labels if path else (),
-        missed=path.missed if path else (),
-        title=f"Workspace of {chain.name}",
-    )
-    ranges = (
-        "their ranges"
-        if np.isfinite(chain.upper - chain.lower).all()
-        else "their ranges, or one turn if none is printed"
-    )
-    caption = (
-        f"{dh.where or 'The table'}, {chain.convention} convention. Joints uniform in {ranges}."
-    )
+    points, labels, missed, said = path or (None, (), (), "")
+    title = f"Workspace of {chain.name}"
+    picture = workspace_picture(cloud, waypoints=points, labels=labels, missed=missed, title=title)
+    ranges = "their ranges"
+    if not np.isfinite(chain.upper - chain.lower).all():
+        ranges += ", or one turn if none is printed"
+    where = dh.where or "The table"
+    caption = f"{where}, {chain.convention} convention. Joints uniform in {ranges}."
     if dh.alpha_signs == "uncertain":
         caption += " Twists have their printed signs; the text may have lost some of them."
-    yield drawn("workspace", picture, caption + (f" {path.said}" if path else ""))
+    yield drawn(picture, "workspace", caption=f"{caption} {said}".strip())
 
 
 def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
@@ -204,7 +165,7 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
             if reached
             else "None is shown to be out of reach."
         )
-    return _Path(points, names, missed, said)
+    return points, names, missed, said
 
 
 def _joint_path(study: Study, chain: Chain) -> _Path | None:
@@ -229,22 +190,19 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
             f"lies outside the range of this table, {chain.lower[j]:.4f} to {chain.upper[j]:.4f} "
             "rad, so the text may measure its angles from another zero."
         )
-        return _Path(np.empty((0, 3)), (), (), said)
+        return np.empty((0, 3)), (), (), said
     points = np.asarray(forward_kinematics(chain, q)[..., :3, 3])
     said = f"Way-points by forward kinematics.{noted(study, study.main_reading)}"
-    return _Path(points, tuple(labels or ()), (), said)
-
-
-# --- tent map -------------------------------------------------------------------------------------
+    return points, tuple(labels or ()), (), said
 
 
 def _tents(study: Study) -> Iterator[Block]:
-    segments = [
+    counts = (
         study.case.statement(pid, rid).waypoints.number - 1
         for pid in dict.fromkeys(p for p, _ in study.case.selections())
         for rid in study.readings[:1]
-    ]
-    dimensions = next((n for n in segments if n > 1), None)
+    )
+    dimensions = next((n for n in counts if n > 1), None)
     if dimensions is None:
         return
     for block in study.case.algorithms:
@@ -252,11 +210,8 @@ def _tents(study: Study) -> Iterator[Block]:
         if not isinstance(built, ImprovedWOA) or built.initial is not InitialRule.TENT:
             continue
         scatter = tent_scatter(built.whales, dimensions, built.position_initial, built.beta)
-        picture = tent_picture(
-            scatter,
-            unit="s",
-            title=f"Initial population of {built.whales} times {dimensions} durations, tent map",
-        )
+        title = f"Initial population of {built.whales} times {dimensions} durations, tent map"
+        picture = tent_picture(scatter, unit="s", title=title)
         printed = "as printed" if "tent_rule" in block.settings else "left open by the text"
         low, high = built.position_initial
         caption = (
@@ -264,23 +219,20 @@ def _tents(study: Study) -> Iterator[Block]:
             f"{high:g} s; first two durations of every member. How orbits fill the population is "
             f"{printed}; the listed choice is “{built.tent_rule}”."
         )
-        yield drawn(file_name("tent", block.id), picture, caption)
+        yield drawn(picture, "tent", block.id, caption=caption)
         lengths = {
             TentRule.COORDINATE: built.whales,
             TentRule.MEMBER: dimensions,
             TentRule.SINGLE: built.whales * dimensions,
         }
-        rows = tuple(
+        rows = [
             (
-                (f"{rule}" + (" (listed choice)" if rule is built.tent_rule else "")),
+                f"{rule} (listed choice)" if rule is built.tent_rule else str(rule),
                 lengths[rule],
                 f"{scatter.collapsed[rule]} of {built.whales}",
             )
             for rule in TentRule
-        )
-        columns = (
-            "orbits by",
-            ">points of an orbit",
-            ">members with a duration of exactly 0 (seed 0)",
-        )
+        ]
+        zero = ">members with a duration of exactly 0 (seed 0)"
+        columns = ("orbits by", ">points of an orbit", zero)
         yield table(columns, rows)

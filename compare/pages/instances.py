@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...problem import Case, file_name
+from ...problem import Case
 from ..audits import CaseAudit, Study, place
 from ..audits.instances import STARTS, InstancesResult, examinable, examined, percent_range
 from ..audits.rules import HANDLED, attributed, placed
-from ..blocks import Block, Drawn, Folded, Grid, Prose, Section, Terms, table
-from ..documents import Effect, ExaminedInstances, Procedure, Reduction, Why
-from ..pictures import instances_picture, svg
+from ..blocks import Block, Folded, Grid, Prose, Section, Terms, table
+from ..documents import Effect, ExaminedInstances, Procedure, Why
+from ..pictures import drawn, instances_picture
 
 
 def other_instances(one: CaseAudit) -> tuple[Section, ...]:
@@ -35,6 +35,10 @@ def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -
         "Every pair of one run of each, and every pair of optima; strokes are medians. Instances "
         "are drawn from the robot's workspace and are not the paper's."
     )
+    by_step = tuple(
+        table(_COLUMNS, _rows(entry, result, step), f"Steps of {step:g} {block.unit}")
+        for step in block.lengths
+    )
     return [
         *(Prose(said) for said in (placed(result), " ".join(attributed(result))) if said),
         Prose(
@@ -43,15 +47,9 @@ def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -
             "note",
         ),
         Terms(_design(study, result)),
-        Drawn(file_name("family", block.id), svg(picture), title, caption),
+        drawn(picture, "family", block.id, caption=caption),
         table(_COLUMNS, _rows(entry, result, None), "Reductions of the total, in %"),
-        Folded(
-            "Reductions by step length",
-            tuple(
-                table(_COLUMNS, _rows(entry, result, step), f"Steps of {step:g} {block.unit}")
-                for step in block.lengths
-            ),
-        ),
+        Folded("Reductions by step length", by_step),
         Folded(f"Totals of every instance, {stands}", (_instances(entry, result.labels),)),
     ]
 
@@ -95,34 +93,28 @@ _COLUMNS = ("reading", "due to", ">pairs", ">least", ">quarter", ">median", ">th
 
 def _rows(
     entry: ExaminedInstances, result: InstancesResult, step: float | None
-) -> tuple[tuple[object, ...], ...]:
-    return tuple(_row(one, result) for one in entry.reductions if one.step == step)
-
-
-def _row(found: Reduction, result: InstancesResult) -> tuple[object, ...]:
-    reached = None
-    if result.printed is not None and found.effect is Effect.BOTH and found.objective is not None:
-        at = result.block.objectives.index(found.objective)
-        values = result.reductions(found.reading, found.effect, at, found.step)
-        good = values[np.isfinite(values)]
-        if good.size:
-            reached = f"{100 * float((good >= result.printed[0]).mean()):.3g} %"
-    quantiles = (
-        found.lowest,
-        found.lower_quarter,
-        found.median,
-        found.upper_quarter,
-        found.highest,
-    )
-    missing = f"\n{found.missing} without answer" if found.missing else ""
-    return (
-        result.label(found.reading),
-        (found.effect + (f", {found.objective}" if found.objective else "")),
-        f"{found.pairs}{missing}",
-        *((None if isinstance(x, Why) else f"{100 * x:.1f}") for x in quantiles),
-        (None if isinstance(found.shorter, Why) else f"{100 * found.shorter:.3g} %"),
-        reached,
-    )
+) -> list[tuple[object, ...]]:
+    rows: list[tuple[object, ...]] = []
+    for one in (found for found in entry.reductions if found.step == step):
+        reached = None
+        if result.printed is not None and one.effect is Effect.BOTH and one.objective is not None:
+            at = result.block.objectives.index(one.objective)
+            values = result.reductions(one.reading, one.effect, at, one.step)
+            good = values[np.isfinite(values)]
+            if good.size:
+                reached = f"{100 * float((good >= result.printed[0]).mean()):.3g} %"
+        quantiles = (one.lowest, one.lower_quarter, one.median, one.upper_quarter, one.highest)
+        rows.append(
+            (
+                result.label(one.reading),
+                one.effect + (f", {one.objective}" if one.objective else ""),
+                f"{one.pairs}" + (f"\n{one.missing} without answer" if one.missing else ""),
+                *(None if isinstance(x, Why) else f"{100 * x:.1f}" for x in quantiles),
+                None if isinstance(one.shorter, Why) else f"{100 * one.shorter:.3g} %",
+                reached,
+            )
+        )
+    return rows
 
 
 def _instances(entry: ExaminedInstances, labels: Mapping[str, str]) -> Grid:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby
 
@@ -37,8 +37,7 @@ from ..documents import (
     opened,
     worth_little,
 )
-from .numbers import asked_cells, problem_cell
-from .units import both_units, one_unit
+from .numbers import asked_cells, both_units, one_unit, problem_cell
 
 _OPEN_WORDS = 30
 """Words of a reason that stand in the open; what goes beyond is a fold away."""
@@ -56,9 +55,8 @@ def against(one: CaseAudit) -> Section:
     causes = [c for c in one.causes if not _covered(one, c)]
     if causes:
         blocks += [Prose("The causes", "heading"), *(b for c in causes for b in _behind(one, c))]
-    if not chosen:
-        title = "Evidence against printed statements"
-    else:
+    title = "Evidence against printed statements"
+    if chosen:
         title = "Claims refuted, contradicted or dependent on the reading"
     return Section("against", title, tuple(blocks))
 
@@ -72,9 +70,6 @@ def folded_claims(one: CaseAudit) -> Iterator[Section]:
         title += f": {beside}" if beside else ""
         found = tuple(claims_shown(one.document, own, words=_OPEN_WORDS))
         yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
-
-
-# --- causes ---------------------------------------------------------------------------------------
 
 
 def _covered(one: CaseAudit, cause: Cause) -> bool:
@@ -102,10 +97,10 @@ def _behind(one: CaseAudit, cause: Cause) -> Iterator[Block]:
         yield Folded("Other changes that would explain it", shown[1:])
     hit = dict.fromkeys(c.claim for c in cause.consequences if c.claim and c.claim != cause.claim)
     if hit:
-        claims = [one.case.claim(name) for name in hit]
+        claims = map(one.case.claim, hit)
         rows = [
-            (Cell(claim_text(one.case, claim), target=file_name("claim", claim.id)), place(claim))
-            for claim in claims
+            (Cell(claim_text(one.case, c), target=file_name("claim", c.id)), place(c))
+            for c in claims
         ]
         title = f"{len(hit)} more claim{'' if len(hit) == 1 else 's'} affected"
         yield Folded(title, (table(("claim", "place"), rows),))
@@ -115,11 +110,15 @@ def advised(one: CaseAudit) -> Section:
     """What contradicts itself or is doubtful stands open, what is left open behind a fold."""
     columns = ("", "where", "what was found", "~what to change")
     pressing, left_open = (
-        table(columns, [(word(a.urgency), a.where, a.says, a.change) for a in some])
-        for some in (
-            [a for a in one.advice if a.urgency is not Urgency.OPEN],
-            [a for a in one.advice if a.urgency is Urgency.OPEN],
+        table(
+            columns,
+            [
+                (word(a.urgency), a.where, a.says, a.change)
+                for a in one.advice
+                if (a.urgency is Urgency.OPEN) == later
+            ],
         )
+        for later in (False, True)
     )
     blocks: list[Block] = [pressing] if pressing.rows else []
     if left_open.rows:
@@ -149,16 +148,9 @@ def _problems(study: Study) -> Grid:
         p = study.problem(pair)
         slides |= any(p.linear)
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint separately"
-        rows.append(
-            (
-                *asked_cells(study, pair),
-                f"{len(p.joints)} × {p.waypoints.shape[0]}",
-                p.curve.name,
-                _limits(p, study.case.statement(*pair)),
-                _bounds(p),
-                how,
-            )
-        )
+        size = f"{len(p.joints)} × {p.waypoints.shape[0]}"
+        limits = _limits(p, study.case.statement(*pair))
+        rows.append((*asked_cells(study, pair), size, p.curve.name, limits, _bounds(p), how))
     columns = ("problem", "reading", "joints × way-points", "curve", "limits", "durations",
              "coupling")  # fmt: skip
     base = "rad, m and s" if slides else "rad and s"
@@ -196,9 +188,6 @@ def _bounds(problem: Problem) -> str:
     return text
 
 
-# --- findings -------------------------------------------------------------------------------------
-
-
 def findings(one: CaseAudit) -> Section:
     """Findings by severity; those that say the same under several readings share a row."""
     blocks: list[Block] = []
@@ -215,12 +204,6 @@ def findings(one: CaseAudit) -> Section:
     return Section("findings", "Every finding, rule by rule", tuple(blocks), folded=True)
 
 
-def _word(finding: Finding) -> str:
-    """The verdict of a finding; a distance that was computed and decides nothing informs."""
-    informs = finding.verdict is ClaimVerdict.NOT_CHECKABLE and isinstance(finding.gap, Gap)
-    return "information" if informs else str(finding.verdict)
-
-
 def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for f in found:
@@ -228,27 +211,24 @@ def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
         groups.setdefault(key, []).append(f)
     titles, rows = {rule.id: rule.title for rule in RULES}, []
     for f, *more in groups.values():
-        under = [x.reading for x in (f, *more) if x.reading is not None]
-        which = (
-            "all"
-            if not under or len(set(under)) == readings
-            else "; ".join(case.labels[name] for name in dict.fromkeys(under))
-        )
-        about = f.claim or ""
-        where = place(case.claim(about)) if about else ""
+        under = dict.fromkeys(x.reading for x in (f, *more) if x.reading is not None)
+        which = "all"
+        if 0 < len(under) < readings:
+            which = "; ".join(case.labels[name] for name in under)
+        where = place(case.claim(f.claim)) if f.claim else ""
         problem = problem_cell(case, f.problem) if f.problem else ""
-        known = [where, problem, f"readings: {which}"]
+        known = "\n".join(x for x in (where, problem, f"readings: {which}") if x)
+        # A distance that was computed and decides nothing informs.
+        informs = f.verdict is ClaimVerdict.NOT_CHECKABLE and isinstance(f.gap, Gap)
+        said = "information" if informs else str(f.verdict)
         rows.append(
             (
                 Cell(f"{f.rule}\n{titles.get(f.rule, '')}", target=f"word-{f.rule}"),
-                Cell(
-                    "\n".join(x for x in known if x),
-                    target=file_name("claim", about) if about else "",
-                ),
+                Cell(known, target=file_name("claim", f.claim) if f.claim else ""),
                 f.printed,
                 f.computed,
                 _gap(f),
-                replace(word(f.verdict), text=f"{_word(f)}\nbasis: {f.basis}"),
+                replace(word(f.verdict), text=f"{said}\nbasis: {f.basis}"),
                 f.message,
             )
         )
@@ -261,9 +241,6 @@ def _gap(finding: Finding) -> str | None:
     return None if isinstance(gap, Why) else f"{gap.percent}\n{gap.kind}"
 
 
-# --- what it rests on -----------------------------------------------------------------------------
-
-
 def foundations(one: CaseAudit) -> list[Section]:
     """Readings, assumptions, and what cannot be checked."""
     case, default = one.case, one.case.default_reading.id
@@ -272,37 +249,30 @@ def foundations(one: CaseAudit) -> list[Section]:
         for r in case.readings
         if r.id in one.study.readings
     )
-    assumed = tuple(
-        (a.text, a.choice, "; ".join(dict.fromkeys(_affected(case, one) for one in a.affects)))
+    assumed = [
+        (a.text, a.choice, "; ".join(dict.fromkeys(_affected(case, x) for x in a.affects)))
         for a in case.assumptions
-    )
-    lost = tuple((n.where, n.what, n.why) for n in case.not_checkable)
-    opened = [
-        Folded(f"Left open for {a.name}", (Terms(_numbered(a.open)),))
-        for a in case.algorithms
-        if a.open
     ]
-    choices = (table(("left open", "chosen", "affects"), assumed),) if assumed else ()
-    return [
-        Section(
+    lost = [(n.where, n.what, n.why) for n in case.not_checkable]
+    choices: list[Block] = [table(("left open", "chosen", "affects"), assumed)] if assumed else []
+    for a in case.algorithms:
+        if a.open:
+            points = tuple((str(i), line) for i, line in enumerate(a.open, start=1))
+            choices.append(Folded(f"Left open for {a.name}", (Terms(points),)))
+    parts: tuple[tuple[str, str, tuple[Block, ...]], ...] = (
+        (
             "readings",
             "Readings and why they are admissible",
             (Terms(readings),) if len(readings) > 1 else (),
-            folded=True,
         ),
-        Section(
-            "assumptions",
-            "Points that the text leaves open, and the choices made",
-            (*choices, *opened),
-            folded=True,
-        ),
-        Section(
+        ("assumptions", "Points that the text leaves open, and the choices made", tuple(choices)),
+        (
             "not-checkable",
             "Not checkable from the text",
             (table(("where", "what", "why"), lost),) if lost else (),
-            folded=True,
         ),
-    ]
+    )
+    return [Section(*part, folded=True) for part in parts]
 
 
 def _affected(case: Case, one: str) -> str:
@@ -315,7 +285,3 @@ def _affected(case: Case, one: str) -> str:
     words = {"waypoints": "way-points", "interpolant": "curve"}
     called: dict[str, str] = {**words, **titles, **printed, **algorithms, **places, **case.labels}
     return called.get(one, one)
-
-
-def _numbered(lines: Iterable[str]) -> tuple[tuple[str, str], ...]:
-    return tuple((str(i), line) for i, line in enumerate(lines, start=1))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-
-from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME_TOTAL, STARTS
 from ...problem import LONGEST_NAME, TOLERANCE, Case, CaseError, file_name, read_regular
@@ -42,17 +41,6 @@ MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
 RESERVED = (Path("index.html").stem, Path(MARK).stem, Path(GLOSSARY).stem)
 """Names of pages of the report itself, which no case can take."""
-
-
-class _MarkedCase(BaseModel):
-    case: str
-
-
-class _Mark(BaseModel):
-    """What is read of an earlier report, of whatever version."""
-
-    version: str = Field(alias="schema")
-    cases: tuple[_MarkedCase, ...]
 
 
 def write_report(report: AuditReport, out: Path) -> None:
@@ -92,13 +80,13 @@ def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--
 def _foreign(out: Path, there: list[str]) -> str | None:
     """The first file that no report has written; None if there is none."""
     try:
-        # Bytes that are read to know an earlier report: hundreds of times the largest one shipped.
-        mark = _Mark.model_validate_json(read_regular(out / MARK, 1_000_000_000, "name another"))
-    except (OSError, ValueError):
+        # Hundreds of times the largest one shipped.
+        mark = json.loads(read_regular(out / MARK, 1_000_000_000, "name another"))
+        version, cases = str(mark["schema"]), [str(one["case"]) for one in mark["cases"]]
+    except (OSError, ValueError, TypeError, LookupError, RecursionError):
         return there[0]
-    if not mark.version.startswith("trajgap/"):
+    if not version.startswith("trajgap/"):
         return MARK
-    cases = [one.case for one in mark.cases]
     pages = [file_name(case) for case in cases]
     known = {
         "index.html",
@@ -171,12 +159,13 @@ def _index(report: AuditReport) -> Page:
 def case_page(one: CaseAudit) -> Page:
     """Everything that the page of one case says, in order."""
     source, made = one.document.source, one.document.provenance
+    shown = card_shown(one.card, tally(one.judgements), card_picture(one))
     audited = f"Audited {made.date} with trajgap {made.trajgap}"
     return Page(
         one.case.id,
         one.case.title,
         (
-            _card(one),
+            Section("card", "Verdict", (shown,)),
             advised(one),
             against(one),
             where_time_goes(one),
@@ -202,15 +191,8 @@ def case_page(one: CaseAudit) -> Page:
     ).filled
 
 
-def _card(one: CaseAudit) -> Section:
-    shown = card_shown(one.card, tally(one.judgements), card_picture(one))
-    return Section("card", "Verdict", (shown,))
-
-
 def _not_computed(one: CaseAudit) -> Section:
     """Why there are no optima; nothing if there are some."""
-    if one.study.has_problems:
-        return Section("not-computed", "Not computed", ())
     why = one.case.statement().waypoints.not_printed or "none of its readings poses a problem"
     # Where there are several readings, the section above has said why.
     reason = "" if one.readings is not None else f" ({why})"
@@ -218,7 +200,7 @@ def _not_computed(one: CaseAudit) -> Section:
         f"No problem is posed, because way-points are not printed{reason}. The case has no "
         "optima, motions, replays or landscapes of its own."
     )
-    return Section("not-computed", "Not computed", (said,))
+    return Section("not-computed", "Not computed", () if one.study.has_problems else (said,))
 
 
 def _reproduced(one: CaseAudit) -> Section:

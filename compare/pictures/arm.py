@@ -75,12 +75,23 @@ def arm_picture(
             )
     longest = max(float(one.times[-1]) for one in motions)
     clock = np.linspace(0.0, longest, 73)  # 20 steps a second for three or four seconds
-    arms = [_points(chain, one.at(clock)) for one in motions]
+    # Origins of base and links, shape (times, joints + 1, 3).
+    arms = [
+        np.pad(link_frames(chain, one.at(clock))[..., :3, 3], ((0, 0), (1, 0), (0, 0)))
+        for one in motions
+    ]
+    # The way of each end, a curve to the eye, shape (points, 3).
+    ways = [
+        forward_kinematics(chain, one.at(np.linspace(0.0, float(one.times[-1]), 161)))[..., :3, 3]
+        for one in motions
+    ]
     marks = forward_kinematics(chain, np.asarray(waypoints, dtype=np.float64))[..., :3, 3]
     view = _View(np.vstack([*(a.reshape(-1, 3) for a in arms), marks]))
     panels = "".join(
-        _panel(one, arm, _way(chain, one), view, marks, colour, f"{name}-{k}")
-        for k, (one, arm, colour) in enumerate(zip(motions, arms, _COLOURS, strict=False))
+        _panel(one, arm, way, view, marks, colour, f"{name}-{k}")
+        for k, (one, arm, way, colour) in enumerate(
+            zip(motions, arms, ways, _COLOURS, strict=False)
+        )
     )
     frames = [[view.line(pose) for pose in arm] for arm in arms]
     floors = [[view.line(pose * (1, 1, 0)) for pose in arm] for arm in arms]
@@ -104,18 +115,6 @@ def arm_picture(
 
 def _static(name: str) -> str:
     return (Path(__file__).parent / "static" / name).read_text(encoding="utf-8")
-
-
-def _points(chain: Chain, angles: Array) -> Array:
-    """Origins of base and links, shape (times, joints + 1, 3)."""
-    origins = link_frames(chain, angles)[..., :3, 3]
-    return np.concatenate([np.zeros((len(angles), 1, 3)), origins], axis=1)
-
-
-def _way(chain: Chain, motion: ArmMotion) -> Array:
-    """Positions of the end on the whole motion, shape (points, 3)."""
-    times = np.linspace(0.0, float(motion.times[-1]), 161)  # a curve to the eye
-    return forward_kinematics(chain, motion.at(times))[..., :3, 3]
 
 
 class _View:

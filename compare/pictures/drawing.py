@@ -35,19 +35,6 @@ GREEN = "#009e73"  # the third series; their bluish green
 PURPLE = "#cc79a7"  # the fourth series; their reddish purple
 SKY = "#56b4e9"  # the light one beside a dark one; their sky blue
 RED = "#c8102e"  # what is printed, or wrong: darker than their vermilion, apart from the orange
-THEME = {
-    "ink": INK,
-    "muted": MUTED,
-    "grid": GRID,
-    "paper": PAPER,
-    "blue": BLUE,
-    "orange": ORANGE,
-    "green": GREEN,
-    "purple": PURPLE,
-    "sky": SKY,
-    "red": RED,
-}
-"""Colours that a page may replace, by the name of their CSS variable."""
 DARK = {
     "ink": "#e6eaf0",
     "muted": "#a3adba",
@@ -61,6 +48,10 @@ DARK = {
     "red": "#ff6b81",
 }
 """The same colours on a dark page, as its style has them."""
+THEME = dict(
+    zip(DARK, (INK, MUTED, GRID, PAPER, BLUE, ORANGE, GREEN, PURPLE, SKY, RED), strict=True)
+)
+"""Colours that a page may replace, by the name of their CSS variable."""
 KINDS = ("png", "svg", "pdf")
 """Formats of a file with a picture, as its name ends."""
 Line = Literal["-", "--", "-.", ":"]

@@ -32,8 +32,21 @@ from ...problem.motions import (
 )
 from ..documents import si_unit
 from .drawing import INK, ORANGE, RED, Picture, shown
-from .panels import Line, Mark, Unit, Units, panels_picture
-from .traced import HUGE, POINTS, Stretches, beyond, joined_stretches, sampled, thinned, without
+from .panels import (
+    HUGE,
+    POINTS,
+    Line,
+    Mark,
+    Stretches,
+    Unit,
+    Units,
+    beyond,
+    joined_stretches,
+    panels_picture,
+    sampled,
+    thinned,
+    without,
+)
 
 _FEW = 60
 """Samples or pieces of which each is marked: more would hide the curve."""
@@ -92,24 +105,24 @@ def shown_in(units: Units | None, problem: Problem, joint: int, quantity: str) -
     return own or (si_unit(quantity, problem.linear[joint]), 1.0)
 
 
-def _limits_of(problem: Problem, joint: int, order: int) -> tuple[float, float]:
-    limits = problem.limits
-    if order == 0:
-        return float(limits.position_lower[joint]), float(limits.position_upper[joint])
-    below, above = limits.sides[:, joint, order - 1].tolist()
-    return -below, above
-
-
 def _line(
     problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int, unit: Unit
 ) -> Line:
-    low, high = _limits_of(problem, joint, order)
+    limits = problem.limits
+    if order:
+        low, high = (limits.sides[:, joint, order - 1] * (-1, 1)).tolist()
+    else:
+        low, high = float(limits.position_lower[joint]), float(limits.position_upper[joint])
     times, values = sampled(trajectory, column, order)
     own = np.empty(0), np.empty(0)
     marks = []
     if order:
         top = max(extrema(trajectory, column, order), key=lambda e: abs(e.value))
-        marks.append(_largest(top.time, top.value, low, high))
+        limit = low if top.value < 0 else high  # on its side
+        ratio = top.value / limit if limit else np.inf
+        broken = abs(top.value) > abs(limit) * (1 + TOLERANCE)
+        colour = RED if broken else INK
+        marks.append(Mark(top.time, top.value, limit, ratio, low == -high, colour))
     else:
         at = trajectory.breaks[list(problem.curve.waypoint_breaks)]
         own = at, problem.waypoints[:, joint]
@@ -126,14 +139,6 @@ def _line(
         breaks=trajectory.breaks,
         broken=beyond(trajectory, column, order, low, high),
     )
-
-
-def _largest(time: float, value: float, low: float, high: float) -> Mark:
-    """The largest value beside the limit on its side."""
-    limit = low if value < 0 else high
-    ratio = value / limit if limit else np.inf
-    broken = abs(value) > abs(limit) * (1 + TOLERANCE)
-    return Mark(time, value, limit, ratio, low == -high, RED if broken else INK)
 
 
 def checked_picture(

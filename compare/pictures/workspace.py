@@ -102,15 +102,6 @@ def _positions(waypoints: ArrayLike | None) -> Array:
     return path
 
 
-def _dots(points: Array) -> Path:
-    """One path with a stroke of no length at every point: far smaller than a marker for each."""
-    codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), len(points))
-    path = Path(np.repeat(points, 2, axis=0), codes)
-    # Simplifying would drop such strokes.
-    path.should_simplify = False
-    return path
-
-
 def _view(
     axes: Axes,
     workspace: Workspace,
@@ -122,7 +113,11 @@ def _view(
     corner = workspace.lower[plane]
     size = workspace.upper[plane] - corner
     dots: Style = {"edgecolor": SKY, "linewidth": 1.5, "capstyle": "round", "alpha": 0.75}
-    axes.add_patch(PathPatch(_dots(cloud), fill=False, **dots))
+    # One path with a stroke of no length at every point: far smaller than a marker for each.
+    codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), len(cloud))
+    path_of_dots = Path(np.repeat(cloud, 2, axis=0), codes)
+    path_of_dots.should_simplify = False  # which would drop such strokes
+    axes.add_patch(PathPatch(path_of_dots, fill=False, **dots))
     box = Rectangle((corner[0], corner[1]), *size, fill=False, edgecolor=BLUE, linewidth=0.9)
     axes.add_patch(box)
     axes.plot(0, 0, marker="+", color=INK, markersize=9, linestyle="none")

@@ -55,8 +55,7 @@ from ..pictures import drawn, reached_picture, waterfall_picture
 from .docutils_nodes import nodes_of
 from .leaderboard import HANDLINGS, board_of, board_parts, boards_drawn, said
 from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn
-from .proofs import PROVED_WITHIN, instances_of, proof_said, proved_again
-from .results import Results
+from .results import PROVED_WITHIN, Results, instances_of, proof_said, proved_again
 
 _NONE = "–"
 """A cell without a value."""

@@ -59,9 +59,9 @@ def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
         f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} is "
         f"first of {len(strict)} optimisers: {_share(best)} of its runs come within 0.1\N{NBSP}% "
         f"of the certified optimum, against {_share(random)} of random search; the median "
-        f"of the optimisers is {_median(strict)}.",
+        f"of the optimisers is {_share(*strict)}.",
         "If a motion beyond a limit is slowed down instead of rejected, the median of the "
-        f"optimisers is {_median(loose)}, and the first, {loose[0].optimizer}, reaches "
+        f"optimisers is {_share(*loose)}, and the first, {loose[0].optimizer}, reaches "
         f"{_share(loose[0])}.",
         f"The best of the papers' algorithms are {_papers_best(strict)} under the death penalty, "
         f"and {_papers_best(loose)} under the stretch.",
@@ -74,11 +74,8 @@ def _named(board: Board, label: str) -> Ranked:
     return next(one for one in board.standings if one.optimizer == label)
 
 
-def _share(one: Ranked) -> str:
-    return f"{100 * one.solved[_MIDDLE][0]:.0f}\N{NBSP}%"
-
-
-def _median(standings: Sequence[Ranked]) -> str:
+def _share(*standings: Ranked) -> str:
+    """Median share of their runs that come within 0.1 %."""
     middle = float(np.median([one.solved[_MIDDLE][0] for one in standings]))
     return f"{100 * middle:.0f}\N{NBSP}%"
 

@@ -26,15 +26,8 @@ from .results import Results
 
 _NONE = "–"
 """A cell without a value."""
-COLUMNS = (
-    "paper",
-    "printed, s",
-    "optimum or best known, s",
-    "above it",
-    "evidence",
-    "its algorithm ends",
-    "what was found",
-)
+COLUMNS = ("paper", "printed, s", "optimum or best known, s", "above it", "evidence",
+           "its algorithm ends", "what was found")  # fmt: skip
 """What a row of the table says."""
 
 
@@ -138,16 +131,9 @@ def paper_row(name: str, case: AuditedCase) -> PaperRow:
     counts = Counter(one.verdict for one in case.verdicts)
     decided = counts.total() - counts[ClaimVerdict.NOT_CHECKABLE]
     against = decided > counts[ClaimVerdict.SUPPORTED]
-    return PaperRow(
-        name,
-        cited(case.source),
-        case.title,
-        distance_of(case),
-        reached_of(case),
-        _found(case, counts, against),
-        decided,
-        against,
-    )
+    found, named = _found(case, counts, against), cited(case.source)
+    distance, reached = distance_of(case), reached_of(case)
+    return PaperRow(name, named, case.title, distance, reached, found, decided, against)
 
 
 def _found(case: AuditedCase, counts: Counter[ClaimVerdict], against: bool) -> str:

@@ -13,7 +13,7 @@ import pytest
 from support import browser
 from support.checkout import ROOT
 from trajgap.compare.app import make_server, server
-from trajgap.compare.app.curves_shown import offered_curves
+from trajgap.compare.app.server import offered_curves
 from trajgap.compare.app.submitted import FormError, case_of
 from trajgap.problem import PackageError, TrajgapError, parse_case
 
