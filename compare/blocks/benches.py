@@ -63,7 +63,7 @@ def _optimum_said(optimum: Reference) -> str:
     lower = value_or_none(optimum.lower)
     if lower is None:
         return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
-    width = percent(1 - lower / optimum.upper)
+    width = percent(optimum.width or 0.0)
     far = width.replace("<", "less than") if width.startswith("<") else f"up to {width}"
     return (
         f"Optimum: {shown_bound(lower, 'lower', places=7)} to "

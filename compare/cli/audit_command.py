@@ -10,13 +10,13 @@ from typing import Annotated
 import typer
 
 from ...problem import Case, published_ids
-from .. import audits
+from .. import audits, pages
 from ..audits import Study, in_words
 from ..blocks import Block, Prose, card_shown, counts_said, distances_table, reached_table, table
 from ..documents import (
+    AGAINST,
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
-    Advice,
     AuditDocument,
     AuditedCase,
     ClaimVerdict,
@@ -30,8 +30,8 @@ from ..documents import (
     facts,
     qualified,
     tally,
+    value_or_none,
 )
-from ..pages import check_report_folder
 from .certifying import read_certificates
 from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
@@ -100,11 +100,9 @@ def audit(
     given = [] if certificates is None else read_certificates(certificates)
     folder = out if out is not None or as_json else Path("trajgap-audit")
     if folder is not None:
-        check_report_folder(folder, chosen)
+        pages.check_report_folder(folder, chosen)
     if crate is not None:
-        from ..pages import crate_library
-
-        crate_library()
+        pages.crate_library()
     with new_output(crate, "--crate") as bundle, progress("audit") as step:
         report = audits.audit(
             chosen,
@@ -123,15 +121,11 @@ def audit(
             cache=not no_cache,
         )
         if folder is not None:
-            from ..pages import write_report
-
             step("pages and pictures")
-            write_report(report, folder)
+            pages.write_report(report, folder)
         if crate is not None:
-            from ..pages import crate_of
-
             step("archive")
-            bundle(crate_of(report))
+            bundle(pages.crate_of(report))
     read = [one.case for one in report.cases]
     emit(report.document, lambda shown: audited(shown, read), as_json)
     if folder is not None and not as_json:
@@ -153,19 +147,25 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
         if rows:
             parts.append(table(("verdict", "readings", "~claim and its place"), rows))
         parts += [Prose(said, "note") for said in _unchecked(case)]
-        advice = () if isinstance(case.advice, Why) else case.advice
-        parts += _advised(advice) if advice else [Prose(one) for one in _causes(case)]
+        advice = value_or_none(case.advice) or ()
+        parts += [Prose(""), Prose("Before you submit", "heading")] if advice else []
+        for one in advice:
+            style = "against" if one.urgency is Urgency.CONTRADICTED else ""
+            parts.append(Prose(f"{one.urgency}, {one.where}: {one.says}", style))
+            parts.append(Prose(f"  → {one.change}"))
+        parts += [Prose(one) for one in _causes(case)] if not advice else []
         parts += [Prose(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
-        for title, runs in searches[:_SEARCHES]:
+        # Two, such as each joint separately and all together; the pages have all.
+        for title, runs in searches[:2]:
             # Columns of a page that do not fit a terminal: best, quartiles, evaluations.
             columns = ("algorithm", "limits broken", "median, its gap", "no answer")
             parts += [
                 Prose(""),
                 Prose(f"How near the paper's algorithms get: {title}"),
-                replace(reached_table(runs).without(*(3, 4, 6)), columns=columns),
+                replace(reached_table(runs).without(3, 4, 6), columns=columns),
             ]
-        more = len(searches) - _SEARCHES
+        more = len(searches) - 2
         parts += [Prose(f"{more} more searches are on the pages.", "note")] if more > 0 else []
         parts += [Prose(f"{words}: {value}", "note") for words, value in facts(case)]
     return parts
@@ -175,14 +175,8 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
     """Verdict, readings and words of each claim; the same words in several places are one row."""
     stated = {one.claim: one for one in case.claims}
     places: dict[tuple[str, str, str], list[str]] = {}
-    # Claims in the table: what speaks against them first.
-    order = (
-        ClaimVerdict.REFUTED,
-        ClaimVerdict.INCONSISTENT,
-        ClaimVerdict.DEPENDS,
-        ClaimVerdict.SUPPORTED,
-        ClaimVerdict.NOT_CHECKABLE,
-    )
+    # What speaks against a claim comes first.
+    order = (*AGAINST, ClaimVerdict.SUPPORTED, ClaimVerdict.NOT_CHECKABLE)
     for v in sorted(case.verdicts, key=lambda v: order.index(v.verdict)):
         key = (qualified(v.verdict, v.beside), _under(v), stated[v.claim].text)
         places.setdefault(key, []).append(stated[v.claim].where)
@@ -190,10 +184,6 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
         (verdict, under, f"{text} ({'; '.join(where)})")
         for (verdict, under, text), where in places.items()
     ]
-
-
-_SEARCHES = 2
-"""Searches that a terminal shows, such as that of each joint separately and of all together."""
 
 
 def _unchecked(case: AuditedCase) -> list[str]:
@@ -213,18 +203,6 @@ def _unchecked(case: AuditedCase) -> list[str]:
     more = len(reasons) - len(lines)
     rest = [f"{more} more reason{'s are' if more > 1 else ' is'} on the pages."] if more else []
     return lines + rest
-
-
-def _advised(advice: Sequence[Advice]) -> list[Block]:
-    """What to change, each with its place; what is found first, then how to fix it."""
-    parts: list[Block] = [Prose(""), Prose("Before you submit", "heading")]
-    for one in advice:
-        style = "against" if one.urgency is Urgency.CONTRADICTED else ""
-        parts += [
-            Prose(f"{one.urgency}, {one.where}: {one.says}", style),
-            Prose(f"  → {one.change}"),
-        ]
-    return parts
 
 
 def _under(judgement: Judgement) -> str:

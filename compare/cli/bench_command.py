@@ -18,32 +18,10 @@ from ...nlp import Evidence, Solution, printed_problem_or_none, solve
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
-from .. import pages
+from .. import gaps, pages
 from ..audits import asked_as
 from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
 from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, known, noted
-from ..gaps import (
-    LEADERBOARD,
-    SECONDS,
-    SEEDS,
-    SOLVED,
-    BenchPlan,
-    Board,
-    Ranked,
-    Runs,
-    Store,
-    StudyPlan,
-    StudySession,
-    boards,
-    leaderboard_rows,
-    measure_gaps,
-    on_this_machine,
-    parse_study,
-    plan_bench,
-    run_bench,
-    run_study,
-    summed_up,
-)
 from .input import Selected, naming, read_case, select
 from .options import MOST, ProblemId, run_store, run_workers
 from .output import NEVER_RAN, emit, progress, rendered, say
@@ -113,8 +91,9 @@ def bench(
         typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
     ] = True,
     seconds: Annotated[
-        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
-    ] = SECONDS,
+        float,
+        typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run."),
+    ] = gaps.SECONDS,
     workers: Annotated[int, run_workers()] = 1,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
@@ -143,8 +122,8 @@ def bench(
         for name, value in unused.items():
             if value:
                 raise typer.BadParameter(f"{name} cannot be combined with --against")
-        if against != LEADERBOARD:
-            raise CaseError("--against", "", f"{against!r} is unknown; use {LEADERBOARD}")
+        if against != gaps.LEADERBOARD:
+            raise CaseError("--against", "", f"{against!r} is unknown; use {gaps.LEADERBOARD}")
         # Evaluations and seeds are those of the leaderboard's first table.
         runs = budget or 1000, handling, seeds or 15, seconds
         return _stand_among(case, chosen, set_here, runs, workers, store)
@@ -166,10 +145,10 @@ def bench(
         }
         with naming(stated.file):
             for one in select(stated, problem, reading or stated.default_reading.id, "shared"):
-                plan = plan_bench(
+                plan = gaps.plan_bench(
                     one.problem,
                     chosen,
-                    seeds=seeds or SEEDS,
+                    seeds=seeds or gaps.SEEDS,
                     budget=budget,
                     handling=handling,
                     settings=settled,
@@ -235,7 +214,7 @@ class _Asked:
 
     case: Case
     selected: Selected
-    plan: BenchPlan
+    plan: gaps.BenchPlan
 
     @property
     def words(self) -> str:
@@ -250,7 +229,7 @@ class _Asked:
 
 def _run(
     asked: Sequence[_Asked], workers: int, kept: Path | None
-) -> list[tuple[BenchResult, Runs]]:
+) -> list[tuple[BenchResult, gaps.Runs]]:
     results = []
     with progress("solve", len(asked)) as solving:
         optima = []
@@ -259,14 +238,14 @@ def _run(
             with naming(one.case.file):
                 optima.append(_optimum(one.case, one.selected))
     with ExitStack() as stack:
-        store = None if kept is None else stack.enter_context(Store(kept))
-        engine = stack.enter_context(on_this_machine(workers))
+        store = None if kept is None else stack.enter_context(gaps.Store(kept))
+        engine = stack.enter_context(gaps.on_this_machine(workers))
         total = sum(len(one.plan.trials) for one in asked)
         step = stack.enter_context(progress("first runs", total, rate=True))
         for one, optimum in zip(asked, optima, strict=True):
             with naming(one.case.file):
-                runs = run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
-                result = measure_gaps(runs, optimum).model_copy(update={"words": one.words})
+                runs = gaps.run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
+                result = gaps.measure_gaps(runs, optimum).model_copy(update={"words": one.words})
                 results.append((result, runs))
     return results
 
@@ -309,7 +288,7 @@ def _tables(document: BenchDocument) -> list[Block]:
     return parts
 
 
-_MIDDLE = SOLVED.index(1e-3)
+_MIDDLE = gaps.SOLVED.index(1e-3)
 """Place of the target by which the leaderboard is sorted: 0.1 %."""
 
 
@@ -334,22 +313,22 @@ def _stand_among(
     plan = _plan(labels, settings, seeds, budget, handling, seconds, instances)
     with ExitStack() as stack:
         path = store or Path(stack.enter_context(TemporaryDirectory()), "runs.sqlite")
-        kept = stack.enter_context(Store(path))
-        engine = stack.enter_context(on_this_machine(workers))
+        kept = stack.enter_context(gaps.Store(path))
+        engine = stack.enter_context(gaps.on_this_machine(workers))
         step = stack.enter_context(progress("runs", len(plan)))
 
-        def show(now: StudySession) -> None:
+        def show(now: gaps.StudySession) -> None:
             step(f"{now.resumed + now.run:,} of {now.total:,} runs")
 
-        run_study(plan, kept, engine, progress=show)
-        own = list(summed_up(plan, kept))
+        gaps.run_study(plan, kept, engine, progress=show)
+        own = list(gaps.summed_up(plan, kept))
     theirs = [
         row
-        for row in leaderboard_rows()
+        for row in gaps.leaderboard_rows()
         if (row.budget, row.handling) == (budget, handling)
         and row.problem.partition("/")[0] in instances
     ]
-    (found,) = boards([*theirs, *own])
+    (found,) = gaps.boards([*theirs, *own])
     standing = [one for one in found.standings if one.optimizer in labels]
     many = f"{len(found.problems)} instance{'s' * (len(found.problems) > 1)}"
     say(rendered([
@@ -364,8 +343,8 @@ def _stand_among(
     return NEVER_RAN if any(one.failed == one.runs for one in standing) else 0
 
 
-def _board(budget: int, handling: str) -> Board:
-    known = boards(leaderboard_rows())
+def _board(budget: int, handling: str) -> gaps.Board:
+    known = gaps.boards(gaps.leaderboard_rows())
     budgets = sorted({one.budget for one in known})
     handlings = sorted({one.handling for one in known})
     if budget not in budgets:
@@ -377,7 +356,7 @@ def _board(budget: int, handling: str) -> Board:
     return next(one for one in known if (one.budget, one.handling) == (budget, handling))
 
 
-def _instances(board: Board, source: str | None) -> tuple[str, ...]:
+def _instances(board: gaps.Board, source: str | None) -> tuple[str, ...]:
     """Names of instances of the board, those that are asked for."""
     names = [problem.partition("/")[0] for problem in board.problems]
     if source is None:
@@ -398,7 +377,7 @@ def _plan(
     handling: str,
     seconds: float,
     instances: Sequence[str],
-) -> StudyPlan:
+) -> gaps.StudyPlan:
     """The study of these optimisers on these instances, as a study file states it."""
     blocks = [
         f"{{ name = {json.dumps(name)}, label = {json.dumps(label)}, settings = "
@@ -411,10 +390,10 @@ def _plan(
         f"handlings = {json.dumps(handling)}\noptimizers = [{', '.join(blocks)}]\n"
         f"[[problems]]\ncase = {json.dumps(SUITE_PREFIX + ','.join(instances))}\n"
     )
-    return parse_study(text, "--optimizer", Path())
+    return gaps.parse_study(text, "--optimizer", Path())
 
 
-def _said(one: Ranked, board: Board) -> str:
+def _said(one: gaps.Ranked, board: gaps.Board) -> str:
     """Where an optimiser stands, in a sentence."""
     share = 100 * one.solved[_MIDDLE][0]
     return (

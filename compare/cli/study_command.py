@@ -21,30 +21,10 @@ import numpy as np
 import typer
 
 from ...problem import CaseError, replace_file
+from .. import gaps
 from ..audits import in_words
 from ..blocks import ONE_BY_ONE, Block, Prose, brief_board, table
 from ..documents import noted, percent
-from ..gaps import (
-    LEADERBOARD,
-    Row,
-    RowStatus,
-    Store,
-    StudyPlan,
-    StudyProblem,
-    StudySession,
-    boards,
-    check_export,
-    export_rows,
-    leaderboard_study,
-    load_study,
-    on_dask,
-    on_this_machine,
-    quantiles,
-    run_study,
-    study_rows,
-    summaries_text,
-    summed_up,
-)
 from .options import INTERRUPTED, run_store, run_workers
 from .output import NEVER_RAN, interrupted_by, progress, rendered, say
 
@@ -93,27 +73,27 @@ def study(
             "--workers cannot be combined with --dask, whose cluster has its own"
         )
     exports = export or []
-    shipped = file == Path(LEADERBOARD)
+    shipped = file == Path(gaps.LEADERBOARD)
     path = store or file.with_suffix(".sqlite")
     if path == file:
         raise CaseError(str(path), "--store", "is the study file itself; give another")
     for one in exports:
-        check_export(one)
+        gaps.check_export(one)
         if exports.count(one) > 1:
             raise CaseError(str(one), "--export", "is named twice; name it once")
     if summary is not None and summary.suffix != ".csv":
         raise CaseError(str(summary), "--summary", "is not a .csv file; give one")
-    plan = leaderboard_study() if shipped else load_study(file)
+    plan = gaps.leaderboard_study() if shipped else gaps.load_study(file)
     again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
     cores = workers or os.cpu_count() or 1
-    engines = on_this_machine(cores) if dask is None else on_dask(dask)
-    with Store(path) as kept:
-        session = StudySession(total=len(plan), resumed=0)
+    engines = gaps.on_this_machine(cores) if dask is None else gaps.on_dask(dask)
+    with gaps.Store(path) as kept:
+        session = gaps.StudySession(total=len(plan), resumed=0)
         try:
             with engines as engine, progress("study", len(plan)) as step:
                 begun = time.monotonic()
 
-                def show(now: StudySession) -> None:
+                def show(now: gaps.StudySession) -> None:
                     nonlocal session
                     session = now
                     step(_going(now, time.monotonic() - begun))
@@ -121,7 +101,7 @@ def study(
                 step("the optima from which gaps are measured")
                 # Ctrl-C ends the session with its tally, instead of the program at once.
                 with interrupted_by(signal.default_int_handler):
-                    session = run_study(plan, kept, engine, retry=retry, progress=show)
+                    session = gaps.run_study(plan, kept, engine, retry=retry, progress=show)
         except KeyboardInterrupt:
             rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
             done = f"{session.resumed + session.run:,} of {session.total:,} runs are stored"
@@ -130,9 +110,9 @@ def study(
             print(f"\ntrajgap: {said}", file=sys.stderr)
             return INTERRUPTED
         for one in exports:
-            export_rows(study_rows(plan, kept), one)
+            gaps.export_rows(gaps.study_rows(plan, kept), one)
         if summary is not None:
-            replace_file(summary, summaries_text(summed_up(plan, kept)))
+            replace_file(summary, gaps.summaries_text(gaps.summed_up(plan, kept)))
         parts, never_ran = _summary(plan, kept, session, path, exports, again)
         say(rendered(parts))
     return NEVER_RAN if never_ran else 0
@@ -149,7 +129,7 @@ def _options(name: str, paths: Sequence[Path]) -> list[str]:
     return [word for one in paths for word in (name, str(one))]
 
 
-def _going(now: StudySession, seconds: float) -> str:
+def _going(now: gaps.StudySession, seconds: float) -> str:
     done = now.resumed + now.run
     words = f"{done:,} of {now.total:,} runs"
     if now.run and seconds:
@@ -160,9 +140,9 @@ def _going(now: StudySession, seconds: float) -> str:
 
 
 def _summary(
-    plan: StudyPlan,
-    kept: Store,
-    session: StudySession,
+    plan: gaps.StudyPlan,
+    kept: gaps.Store,
+    session: gaps.StudySession,
     path: Path,
     exports: Sequence[Path],
     again: Sequence[str],
@@ -170,9 +150,9 @@ def _summary(
     """What the runs came to, and whether all of some optimiser on some problem failed."""
     found: dict[tuple[str, str], list[tuple[object, ...]]] = {}
     messages, never_ran = Counter[str](), False
-    for (problem, reading, *named), group in groupby(study_rows(plan, kept), _NAMED):
+    for (problem, reading, *named), group in groupby(gaps.study_rows(plan, kept), _NAMED):
         runs = list(group)
-        bad = [row.message for row in runs if row.status is RowStatus.FAILED]
+        bad = [row.message for row in runs if row.status is gaps.RowStatus.FAILED]
         messages.update(bad)
         never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
@@ -187,7 +167,7 @@ def _summary(
             f"{path}: {session.run:,} runs were done now, {session.resumed:,} were already stored",
             "heading",
         ),
-        *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
+        *(_boards(plan, kept) if plan.file == gaps.LEADERBOARD else _tables(plan, found)),
         Prose("A gap is that of the feasible time, (T − U)/U against the best known total U."),
     ]
     # Five are printed; the store and the exports have all.
@@ -207,7 +187,7 @@ def _summary(
 
 
 def _tables(
-    plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Sequence[object]]]
+    plan: gaps.StudyPlan, found: Mapping[tuple[str, str], Sequence[Sequence[object]]]
 ) -> list[Block]:
     """What the runs on each problem came to, with what was chosen for it."""
     if len(plan.problems) > ONE_BY_ONE:
@@ -224,10 +204,10 @@ def _tables(
     return parts
 
 
-def _boards(plan: StudyPlan, kept: Store) -> list[Block]:
+def _boards(plan: gaps.StudyPlan, kept: gaps.Store) -> list[Block]:
     """Where each optimiser stands over all problems: their own lines would be thousands."""
     parts: list[Block] = []
-    for board in boards(summed_up(plan, kept)):
+    for board in gaps.boards(gaps.summed_up(plan, kept)):
         head = f"{board.handling}, {board.budget:,} evaluations, {len(board.problems)} instances"
         parts.append(Prose(head, "heading"))
         parts.append(brief_board(board))
@@ -237,16 +217,16 @@ def _boards(plan: StudyPlan, kept: Store) -> list[Block]:
     return [*parts, *(Prose(note, "note") for note in plan.notes)]
 
 
-def _words(one: StudyProblem) -> str:
+def _words(one: gaps.StudyProblem) -> str:
     """What a problem of a study is called."""
     joint = "" if one.joint is None else f"joint {one.joint} alone; "
     return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
 
 
-def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
+def _gaps(runs: Sequence[gaps.Row]) -> tuple[str, str]:
     """Least and median gap; a run without a feasible time counts as infinite."""
     if all(row.reference_upper is None for row in runs):
         return "no optimum", ""
     found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
-    best, median = quantiles(np.array(found), [0.0, 0.5])
+    best, median = gaps.quantiles(np.array(found), [0.0, 0.5])
     return percent(best), percent(median)

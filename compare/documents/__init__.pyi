@@ -137,6 +137,7 @@ from .solved import (
     solve_result as solve_result,
 )
 from .vocabulary import (
+    AGAINST as AGAINST,
     TERMS as TERMS,
     TIMES as TIMES,
     UNITS as UNITS,

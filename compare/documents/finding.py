@@ -77,6 +77,11 @@ class Reference(Entry):
     evidence: Evidence = Field(default_factory=_evidence)
     """Certified if there is a lower bound, else best known; of a solution, that of its search."""
 
+    @property
+    def width(self) -> float | None:
+        """How far the optimum may lie below the best known value; None if nothing is certified."""
+        return None if isinstance(self.lower, Why) else 1 - self.lower / self.upper
+
 
 def percent_ends(low: float, high: float) -> tuple[str, str]:
     """Both ends of a range of percentages, rounded outwards to decimals that both share.

@@ -97,10 +97,8 @@ def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
 
 def bench_picture(result: BenchResult, runs: Runs) -> Picture:
     """Anytime gap bands of every optimiser, and the targets that they reach."""
-    lower = value_or_none(result.optimum.lower)
-    return _gaps(
-        runs.by_label, result.optimum.upper, result.title, None if lower is None else _width(result)
-    )
+    optimum = result.optimum
+    return _gaps(runs.by_label, optimum.upper, result.title, optimum.width)
 
 
 def _gaps(
@@ -158,7 +156,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     standings = overall([result for result, _ in results])
     rows = relative_rows(results)
     head = f"{len(results)} problems"
-    gaps = _gaps(rows, 1.0, head, max(_width(result) for result, _ in results))
+    gaps = _gaps(rows, 1.0, head, max(result.optimum.width or 0.0 for result, _ in results))
     notes = dict.fromkeys(note for result, _ in results for note in result.notes)
     messages = tuple(
         Prose(f"{result.title}: {message}", "note")
@@ -180,11 +178,6 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     ]
 
 
-def _width(result: BenchResult) -> float:
-    lower = value_or_none(result.optimum.lower)
-    return 0.0 if lower is None else 1 - lower / result.optimum.upper
-
-
 def _by_problem(
     results: Sequence[tuple[BenchResult, Runs]], standings: Sequence[OverallStanding]
 ) -> Grid:
@@ -192,7 +185,7 @@ def _by_problem(
     rows = []
     for result, _ in results:
         medians = {one.optimizer: gap_cell(one.median) for one in result.standings}
-        width = f"{_width(result):.1e}" if _width(result) else "no bound"
+        width = f"{result.optimum.width:.1e}" if result.optimum.width else "no bound"
         optimum = f"{result.optimum.upper:.6g}"
         rows.append((result.title, optimum, width, *(medians[name] for name in names)))
     columns = ("problem", ">optimum (s)", ">its width", *(f">{name}" for name in names))

@@ -26,6 +26,7 @@ from ..blocks import (
     word,
 )
 from ..documents import (
+    AGAINST,
     Cause,
     ClaimVerdict,
     Finding,
@@ -45,12 +46,7 @@ _OPEN_WORDS = 30
 
 def against(one: CaseAudit) -> Section:
     """Claims that are refuted, contradicted or depend on the reading, and what lies behind."""
-    chosen = [
-        j
-        for verdict in (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
-        for j in one.judgements
-        if j.verdict is verdict
-    ]
+    chosen = [j for verdict in AGAINST for j in one.judgements if j.verdict is verdict]
     blocks: list[Block] = [*claims_shown(one.document, chosen, words=_OPEN_WORDS)]
     causes = [c for c in one.causes if not _covered(one, c)]
     if causes:
@@ -76,11 +72,7 @@ def _covered(one: CaseAudit, cause: Cause) -> bool:
     """Whether a claim above says all of a warning: nothing rests on it, nothing explains it."""
     if cause.severity is Severity.ERROR or cause.explanations or cause.consequences:
         return False
-    return any(
-        j.claim == cause.claim
-        and j.verdict in (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
-        for j in one.judgements
-    )
+    return any(j.claim == cause.claim and j.verdict in AGAINST for j in one.judgements)
 
 
 def _behind(one: CaseAudit, cause: Cause) -> Iterator[Block]:

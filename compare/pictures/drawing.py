@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 from xml.sax.saxutils import escape
 
@@ -59,42 +60,6 @@ Line = Literal["-", "--", "-.", ":"]
 Style: TypeAlias = dict[str, Any]
 """Keywords of a drawing function."""
 
-# What every picture shares: small type for a page's column, a font that is always there, and thin
-# lines without a frame.
-_STYLE: dict[str, Any] = {
-    "font.family": ["DejaVu Sans"],
-    "font.size": 9.0,
-    # Labels come from case files; a dollar sign in them is not a formula.
-    "text.parse_math": False,
-    "text.color": INK,
-    "axes.labelcolor": INK,
-    "axes.edgecolor": MUTED,
-    "axes.titlecolor": INK,
-    "axes.titlesize": 9.0,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 8.5,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.facecolor": PAPER,
-    "axes.unicode_minus": True,
-    "figure.facecolor": PAPER,
-    "hatch.linewidth": 0.6,
-    "xtick.color": MUTED,
-    "ytick.color": MUTED,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "grid.color": GRID,
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "legend.fontsize": 8.5,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "trajgap",
-    "svg.image_inline": True,
-}
-
 
 class Picture(Figure):
     """A figure with a title and a description in words for those who cannot see it."""
@@ -111,7 +76,7 @@ class Picture(Figure):
 @contextmanager
 def drawing() -> Iterator[None]:
     """Style of every picture, whatever the user's own matplotlib settings."""
-    with style.context(["default", _STYLE]):
+    with style.context(["default", Path(__file__).parent / "static" / "trajgap.mplstyle"]):
         yield
 
 
