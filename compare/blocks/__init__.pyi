@@ -5,6 +5,7 @@ from .benches import (
     brief_board as brief_board,
     instance_terms as instance_terms,
     overall_blocks as overall_blocks,
+    share_cell as share_cell,
     suite_table as suite_table,
 )
 from .claims import (

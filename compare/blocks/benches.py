@@ -95,24 +95,23 @@ def brief_board(board: Board, marked: Collection[str] = ()) -> Grid:
 
 
 def _board_cells(board: Board, one: Ranked) -> tuple[str, ...]:
-    place = board.place(one)
+    place, spent = board.place(one), []
+    for ends in one.expected:  # with their interval, of which an end without bound is ∞
+        value, low, high = ("∞" if np.isinf(end) else f"{end:.0f}" for end in ends)
+        spent.append(f"{value}\n({low} to {high})" if place and value != "∞" else "–")
     return (
         str(place or "–"),
         one.optimizer if place else f"{one.optimizer} (reference, no black box)",
-        *(
-            f"{100 * share:.0f} %\n({100 * low:.0f} to {100 * high:.0f})"
-            for share, low, high in one.solved
-        ),
+        *(share_cell(*ends) for ends in one.solved),
         percent(one.median) if np.isfinite(one.median) else "no answer",
-        *(_evaluations(ends) if place else "–" for ends in one.expected),
+        *spent,
         str(one.failed),
     )
 
 
-def _evaluations(ends: tuple[float, float, float]) -> str:
-    """Expected evaluations with their interval; an end without bound is ∞."""
-    value, low, high = ("∞" if np.isinf(end) else f"{end:.0f}" for end in ends)
-    return "–" if value == "∞" else f"{value}\n({low} to {high})"
+def share_cell(share: float, low: float, high: float) -> str:
+    """A share in percent above its interval."""
+    return f"{100 * share:.0f} %\n({100 * low:.0f} to {100 * high:.0f})"
 
 
 def suite_table(

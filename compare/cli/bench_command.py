@@ -91,8 +91,7 @@ def bench(
         typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
     ] = True,
     seconds: Annotated[
-        float,
-        typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run."),
+        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
     ] = gaps.SECONDS,
     workers: Annotated[int, run_workers()] = 1,
     as_json: Annotated[

@@ -51,7 +51,6 @@ NOT_PROVED = 3
 class Question:
     """One problem to certify: all joints together, or one that is optimised by itself."""
 
-    name: str
     selected: Selected
     asked: CertifiedQuestion
     problem: ExactProblem | str
@@ -128,7 +127,7 @@ def certify_case(
                         gap=gap,
                         seconds=seconds,
                         seed=seed,
-                        resume=states[one.name].document if one.name in states else None,
+                        resume=states[one.file].document if one.file in states else None,
                         report=stop.reporting(one.words, step),
                         workers=workers,
                         cache=cache,
@@ -136,8 +135,7 @@ def certify_case(
                 kept += not isinstance(found, str) and found.kept
                 unsettled |= isinstance(found, str) or found.outcome not in settled
                 files = _written(folder, one, found, clock)
-                ids = (case.id, one.selected.problem_id, one.selected.reading_id, one.asked.joint)
-                results.append(certify_result(*ids, subject, found, *files, _why(found)))
+                results.append(certify_result(one.asked, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
     emit(document, lambda shown: _certified(shown, case), as_json)
@@ -177,13 +175,11 @@ def _questions(case: Case, one: Selected, subject: Subject) -> Iterator[Question
 def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
     statement = case.statement(one.problem_id, one.reading_id)
-    name = f"{case.id}.{one.problem_id}.{one.reading_id}"
     said = in_words(case, one.problem_id, one.reading_id)
     ids = (case.id, one.problem_id, one.reading_id)
     alone = coupling is Coupling.PER_JOINT
     labels: Sequence[str | None] = one.problem.joints if alone else [None]
     for j, label in enumerate(labels):
-        own = name if label is None else f"{name}.joint-{label}"
         words = said if label is None else f"joint {label} alone; {said}"
         exact: ExactProblem | str
         try:
@@ -193,16 +189,16 @@ def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Ques
             raise
         except TrajgapError as error:
             exact = str(error)
-        yield Question(own, one, CertifiedQuestion(*ids, label, case.sha256), exact, words)
+        yield Question(one, CertifiedQuestion(*ids, label, case.sha256), exact, words)
 
 
 def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, StateFile]:
-    """State files by the name of the question that each is about."""
+    """State files by the files of the question that each is about."""
     found: dict[str, StateFile] = {}
     for path in resume:
         state = read_state(path)
         fits = [
-            q.name
+            q.file
             for q in asked
             if not isinstance(q.problem, str) and state.fits(q.problem, q.subject)
         ]

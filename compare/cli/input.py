@@ -24,11 +24,11 @@ class Selected:
 
 def check_numbers(arguments: Sequence[str]) -> None:
     """Refuse numbers that parsers of options would take for infinite, without a word of it."""
+    # A number that may be too large for float64, alone or among others in an argument.
+    large = re.compile(
+        r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
+    )
     for before, argument in zip(("", *arguments), arguments, strict=False):
-        # A number that may be too large for float64, alone or among others in an argument.
-        large = re.compile(
-            r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
-        )
         for word in large.findall(argument):
             option = before if before.startswith("--") else argument.partition("=")[0]
             try:
@@ -65,11 +65,9 @@ def read_cases(sources: Sequence[str]) -> list[Case]:
     for source in sources:
         case = read_case(source)
         if case.id in cases:
-            raise CaseError(
-                source,
-                "id",
-                f"{case.id!r} is also the id of {cases[case.id].file}; give each case once",
-            )
+            other = cases[case.id].file
+            why = f"{case.id!r} is also the id of {other}; give each case once"
+            raise CaseError(source, "id", why)
         cases[case.id] = case
     return list(cases.values())
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -76,7 +77,9 @@ class MotionOptions:
 
 def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | None) -> int:
     """Judge the motion of a file; 1 with ``strict`` unless it passes and all of it is judged."""
-    how = _interpolation(options.interpolation)
+    how = None
+    if options.interpolation is not None:
+        how = word_of("--interpolation", options.interpolation, Interpolation)
     read = _read(Path(source), options)
     factors = factors_of(read.units, len(read.joints), "--units")
     limits = stated_limits(read.joints, factors, options)
@@ -229,14 +232,14 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
     return limits
 
 
-def _interpolation(text: str | None) -> Interpolation | None:
-    if text is None:
-        return None
-    try:
-        return Interpolation(text)
-    except ValueError:
-        known_words = ", ".join(Interpolation)
-        raise CaseError("--interpolation", "", f"{text!r} is unknown; use {known_words}") from None
+E = TypeVar("E", bound=StrEnum)
+
+
+def word_of(option: str, text: str, words: type[E]) -> E:
+    """The word that an option gives, out of those that there are."""
+    if text not in tuple(words):
+        raise CaseError(option, "", f"{text!r} is unknown; use {', '.join(words)}")
+    return words(text)
 
 
 def words(text: str | None) -> tuple[str, ...]:

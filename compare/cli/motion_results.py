@@ -216,7 +216,13 @@ def by_question(
     """
     if not apart and len(rows) > 1:
         joined = [(in_words(case, *ids), *row) for ids, own in rows.items() for row in own]
-        return [table(("~problem", *columns), joined), *_ids(rows, case)]
+        # What a command has to be given so that it takes one problem or one reading alone.
+        problems, readings = (dict.fromkeys(ids) for ids in zip(*rows, strict=True))
+        titles = {p.id: p.title or p.id for p in case.problems}
+        asked = [(f"--problem {one}", titles[one]) for one in problems if len(titles) > 1]
+        several = len(case.readings) > 1
+        asked += [(f"--reading {one}", case.labels[one]) for one in readings if several]
+        return [table(("~problem", *columns), joined), table(("for one alone", "~which"), asked)]
     parts: list[Block] = []
     for ids, own in rows.items():
         words = asked_as(case, *ids)
@@ -224,17 +230,6 @@ def by_question(
         parts += [Prose(words)] if words != case.id else []
         parts.append(table(columns, own))
     return parts
-
-
-def _ids(asked: Iterable[tuple[str, str]], case: Case) -> list[Block]:
-    """What a command has to be given so that it takes one problem or one reading alone."""
-    problems, readings = (dict.fromkeys(ids) for ids in zip(*asked, strict=True))
-    titles = {p.id: p.title or p.id for p in case.problems}
-    rows = [
-        *((f"--problem {one}", titles[one]) for one in problems if len(titles) > 1),
-        *((f"--reading {one}", case.labels[one]) for one in readings if len(case.readings) > 1),
-    ]
-    return [table(("for one alone", "~which"), rows)]
 
 
 def reasons(

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...nlp import Solution, retimed_motion
-from ...problem import Case, CaseError, FileLimits, TrajgapError, parse_case, scaffold
+from ...problem import Case, CaseError, FileLimits, parse_case, scaffold
 from ...problem.limit_files import read_urdf
 from ...problem.motions import (
     Evaluated,
@@ -24,8 +24,8 @@ from ...problem.motions import (
 )
 from ..audits import in_words
 from ..documents import WrittenMotion, value_or_none
-from .input import Selected
-from .motion_checking import MotionOptions, stated_limits, words
+from .input import Selected, naming
+from .motion_checking import MotionOptions, stated_limits, word_of, words
 from .motion_results import checked_motion
 from .output import warn
 
@@ -60,13 +60,9 @@ def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str,
         factors = factors_of(words(options.units) or ("rad",), len(joints), "--units")
         if options.urdf and joints == numbered(len(joints)):
             joints = _names(source, options.urdf, len(joints))
-        try:
+        with naming(str(options.urdf or "limits")):
             stated = stated_limits(joints, factors, options)
             limits = stated.two_sided
-        except CaseError:
-            raise
-        except TrajgapError as error:
-            raise CaseError(str(options.urdf or "limits"), "", str(error)) from None
         slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
         doubt = slower and (
             f"deceleration has its own limit at joint {', '.join(slower)}; here the smaller value "
@@ -104,16 +100,14 @@ class AskedSamples:
     @classmethod
     def of(cls, file: Path, rate: float | None, form: str | None, retimed: bool) -> AskedSamples:
         """What the command line asks for."""
-        if form not in (None, *MotionForm):
-            known = ", ".join(MotionForm)
-            raise CaseError("--format", "", f"{form!r} is unknown; use {known}")
-        return cls(file, 500.0 if rate is None else rate, MotionForm(form or "csv"), retimed)
+        wanted = word_of("--format", form or "csv", MotionForm)
+        return cls(file, 500.0 if rate is None else rate, wanted, retimed)
 
 
 def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:
     """Text of a motion, and what is true of it when it is read back."""
     name = str(asked.file)
-    try:
+    with naming(name, "--samples"):
         joints = one.problem.joints
         motion: Evaluated = answer.trajectory
         if asked.retimed:
@@ -121,10 +115,6 @@ def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[
         text = motion_text(motion, asked.form, 1.0 / asked.rate, joints, one.problem.linear)
         limits = JointLimits.of(one.problem.limits, one.problem.joints)
         found = check_motion(read_back(text, asked.form, name), limits)
-    except CaseError:
-        raise
-    except TrajgapError as error:
-        raise CaseError(name, "--samples", str(error)) from None
     return text, WrittenMotion(
         file=name,
         form=asked.form,

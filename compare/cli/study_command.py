@@ -160,7 +160,12 @@ def _summary(
         # Words that a narrow column can break between.
         own = [f"{name} {json.dumps(value)}" for name, value in json.loads(settings).items()]
         said = optimizer, ", ".join(own) or "its own", handling, f"{budget:,}"
-        cells = (*said, len(runs), len(bad), passed, *_gaps(runs))
+        # Least and median gap; a run without a feasible time counts as infinite.
+        ends = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
+        best_and_median = [percent(gap) for gap in gaps.quantiles(np.array(ends), [0.0, 0.5])]
+        if all(row.reference_upper is None for row in runs):
+            best_and_median = ["no optimum", ""]
+        cells = (*said, len(runs), len(bad), passed, *best_and_median)
         found.setdefault((problem, reading), []).append(cells)
     parts: list[Block] = [
         Prose(
@@ -221,12 +226,3 @@ def _words(one: gaps.StudyProblem) -> str:
     """What a problem of a study is called."""
     joint = "" if one.joint is None else f"joint {one.joint} alone; "
     return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
-
-
-def _gaps(runs: Sequence[gaps.Row]) -> tuple[str, str]:
-    """Least and median gap; a run without a feasible time counts as infinite."""
-    if all(row.reference_upper is None for row in runs):
-        return "no optimum", ""
-    found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
-    best, median = gaps.quantiles(np.array(found), [0.0, 0.5])
-    return percent(best), percent(median)

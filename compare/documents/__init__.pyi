@@ -54,24 +54,18 @@ from .card import (
     tally as tally,
     worth_little as worth_little,
 )
-from .certified import (
+from .checked import (
     UNNAMED as UNNAMED,
     AskedQuestion as AskedQuestion,
+    BrokenPlace as BrokenPlace,
     CertifiedResult as CertifiedResult,
     CertifyDocument as CertifyDocument,
-    JudgedFile as JudgedFile,
-    VerifyDocument as VerifyDocument,
-    certify_result as certify_result,
-    verify_document as verify_document,
-    worth as worth,
-)
-from .checked import (
-    BrokenPlace as BrokenPlace,
     CheckDocument as CheckDocument,
     CheckedJoint as CheckedJoint,
     CheckedMotion as CheckedMotion,
     CheckResult as CheckResult,
     Judged as Judged,
+    JudgedFile as JudgedFile,
     MotionCheckDocument as MotionCheckDocument,
     MotionFloor as MotionFloor,
     MotionJumpShown as MotionJumpShown,
@@ -80,8 +74,12 @@ from .checked import (
     PassingPoint as PassingPoint,
     RepairedMotion as RepairedMotion,
     RoundingExhibit as RoundingExhibit,
+    VerifyDocument as VerifyDocument,
     WorstPeak as WorstPeak,
     WrittenMotion as WrittenMotion,
+    certify_result as certify_result,
+    verify_document as verify_document,
+    worth as worth,
 )
 from .entry import (
     SCHEMA as SCHEMA,

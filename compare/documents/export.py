@@ -13,8 +13,7 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from ...problem import case_schema
 from .audited import AuditDocument
 from .benched import BenchDocument
-from .certified import CertifyDocument, VerifyDocument
-from .checked import CheckDocument, MotionCheckDocument
+from .checked import CertifyDocument, CheckDocument, MotionCheckDocument, VerifyDocument
 from .entry import SCHEMA, Document, Why
 from .finding import Caveat, CaveatKind
 from .lookups import (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from .. import gaps
 from ..audits import package_version
 from ..blocks import (
     ONE_BY_ONE,
@@ -30,20 +31,6 @@ from ..documents import (
     percent,
     value_or_none,
 )
-from ..gaps import (
-    CURVE_TARGETS,
-    Bracket,
-    Row,
-    Runs,
-    against,
-    band,
-    overall,
-    relative_rows,
-    rows_text,
-    share_of_targets,
-    share_within,
-    totals_of,
-)
 from ..pictures import Anytime, Picture, drawn, gap_picture, profile_picture, themed
 from .folders import check_folder, write_folder
 from .rendering import page_text
@@ -54,7 +41,7 @@ _FILES = ("index.html", _MARK, "rows.csv")
 """What a bench writes beside its pictures: the page, the document, and every run."""
 
 
-def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
+def write_bench(results: Sequence[tuple[BenchResult, gaps.Runs]], out: Path) -> None:
     """Write the page of a bench into a folder; all of it appears together.
 
     `results`: one for each problem. `out`: a new or an empty folder, or one with an earlier bench,
@@ -64,7 +51,7 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     texts = (
         page_text(page),
         json_text(bench_document(results)),
-        rows_text(row for each in results for row in _rows(*each)),
+        gaps.rows_text(row for each in results for row in _rows(*each)),
     )
     files = dict(zip(_FILES, texts, strict=True))
     for one in page.pictures:
@@ -72,10 +59,10 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     write_folder(Path(out), files, _foreign, "a bench")
 
 
-def bench_document(results: Sequence[tuple[BenchResult, Runs]]) -> BenchDocument:
+def bench_document(results: Sequence[tuple[BenchResult, gaps.Runs]]) -> BenchDocument:
     """What `trajgap bench --json` prints."""
     found = tuple(result for result, _ in results)
-    return BenchDocument(results=found, overall=overall(found))
+    return BenchDocument(results=found, overall=gaps.overall(found))
 
 
 def check_bench_folder(out: Path) -> None:
@@ -88,49 +75,47 @@ def _foreign(_: Path, there: list[str]) -> str | None:
     return next(iter(others), None if _MARK in there else there[0])
 
 
-def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
+def _rows(result: BenchResult, runs: gaps.Runs) -> Iterator[gaps.Row]:
     """Every run with its gaps: a bench makes its runs before it sets them against the optimum."""
     upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
-    bracket = Bracket(upper, min(lower, upper) if lower else None)
-    return (against(row, bracket) for row in runs.rows)
+    bracket = gaps.Bracket(upper, min(lower, upper) if lower else None)
+    return (gaps.against(row, bracket) for row in runs.rows)
 
 
-def bench_picture(result: BenchResult, runs: Runs) -> Picture:
+def bench_picture(result: BenchResult, runs: gaps.Runs) -> Picture:
     """Anytime gap bands of every optimiser, and the targets that they reach."""
     optimum = result.optimum
     return _gaps(runs.by_label, optimum.upper, result.title, optimum.width)
 
 
 def _gaps(
-    rows: Mapping[str, Sequence[Row]], optimum: float, of: str, uncertainty: float | None
+    rows: Mapping[str, Sequence[gaps.Row]], optimum: float, of: str, uncertainty: float | None
 ) -> Picture:
     """Optimisers in the order in which they were named.
 
     Colours so stay what they are in the next picture, whoever is closest there.
     """
-    quartiles = (0.25, 0.5, 0.75)
+    drawn_of = []
+    for label, own in rows.items():
+        bands = gaps.band(own, optimum, (0.25, 0.5, 0.75))
+        drawn_of.append(Anytime(label, *bands, *gaps.share_of_targets(own, optimum), len(own)))
     return gap_picture(
-        [
-            Anytime(
-                label, *band(own, optimum, quartiles), *share_of_targets(own, optimum), len(own)
-            )
-            for label, own in rows.items()
-        ],
+        drawn_of,
         title=f"Gap to the optimum over the evaluations: {of}",
         uncertainty=uncertainty,
         budget=max(row.budget for own in rows.values() for row in own),
-        targets=len(CURVE_TARGETS),
+        targets=len(gaps.CURVE_TARGETS),
     )
 
 
-def _ends(at: str, rows: Mapping[str, Sequence[Row]], optimum: float, of: str) -> Folded:
+def _ends(at: str, rows: Mapping[str, Sequence[gaps.Row]], optimum: float, of: str) -> Folded:
     """Share of the runs of every optimiser that end within each gap."""
-    shares = {label: share_within(totals_of(own), optimum) for label, own in rows.items()}
+    shares = {label: gaps.share_within(gaps.totals_of(own), optimum) for label, own in rows.items()}
     picture = profile_picture(shares, title=f"Where runs end: {of}")
     return Folded("Where runs end", (drawn(picture, "profile", at),))
 
 
-def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
+def _page(results: Sequence[tuple[BenchResult, gaps.Runs]]) -> Page:
     first = results[0][0]
     budgets = sorted({row.budget for _, runs in results for row in runs.rows})
     ends = dict.fromkeys(f"{one:,}" for one in (budgets[0], budgets[-1]))
@@ -151,12 +136,12 @@ def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
     return Page("bench", title, (*sections, _reading()), trail=trail, links=links).filled
 
 
-def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
+def _all_sections(results: Sequence[tuple[BenchResult, gaps.Runs]]) -> list[Section]:
     """What the runs say over all problems, and a line for each problem."""
-    standings = overall([result for result, _ in results])
-    rows = relative_rows(results)
+    standings = gaps.overall([result for result, _ in results])
+    rows = gaps.relative_rows(results)
     head = f"{len(results)} problems"
-    gaps = _gaps(rows, 1.0, head, max(result.optimum.width or 0.0 for result, _ in results))
+    picture = _gaps(rows, 1.0, head, max(result.optimum.width or 0.0 for result, _ in results))
     notes = dict.fromkeys(note for result, _ in results for note in result.notes)
     messages = tuple(
         Prose(f"{result.title}: {message}", "note")
@@ -167,7 +152,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     said = (("What was chosen", chosen), ("Runs without an answer", messages))
     found = (
         *overall_blocks(standings),
-        drawn(gaps, "gaps", "all"),
+        drawn(picture, "gaps", "all"),
         _ends("all", rows, 1.0, head),
         *(Folded(title, blocks) for title, blocks in said if blocks),
     )
@@ -179,7 +164,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
 
 
 def _by_problem(
-    results: Sequence[tuple[BenchResult, Runs]], standings: Sequence[OverallStanding]
+    results: Sequence[tuple[BenchResult, gaps.Runs]], standings: Sequence[OverallStanding]
 ) -> Grid:
     names = [one.optimizer for one in standings]
     rows = []
@@ -192,7 +177,7 @@ def _by_problem(
     return table(columns, rows, "Median gap of each optimiser")
 
 
-def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
+def _section(at: int, head: str, result: BenchResult, runs: gaps.Runs) -> Section:
     """What the runs on one problem say; a problem that heads the page is not named again."""
     upper = result.optimum.upper
     blocks: list[Block] = [
@@ -203,7 +188,12 @@ def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
     blocks.append(Folded("Every target", (_targets(result.standings),)))
     if result.pairs:
         blocks.append(Folded("Run against run", (_pairs(result.pairs),)))
-    blocks.append(Folded("Settings", (_settings(result.standings),)))
+    own = "the optimiser's own settings"
+    settings = tuple(
+        (one.optimizer, f"{one.handling}; {own if one.settings == '{}' else one.settings}")
+        for one in result.standings
+    )
+    blocks.append(Folded("Settings", (Terms(settings),)))
     return Section(f"result-{at}", head or "Where each optimiser ends", tuple(blocks))
 
 
@@ -241,16 +231,6 @@ def _pairs(pairs: Sequence[PairCompared]) -> Grid:
     return table(columns, rows)
 
 
-def _settings(standings: Sequence[Standing]) -> Terms:
-    own = "the optimiser's own settings"
-    return Terms(
-        tuple(
-            (one.optimizer, f"{one.handling}; {own if one.settings == '{}' else one.settings}")
-            for one in standings
-        )
-    )
-
-
 def _reading() -> Section:
     said = (
         ("median gap", "how far above the optimum the middle run ends: (T − U)/U, where U is the "
@@ -264,8 +244,8 @@ def _reading() -> Section:
         ("evaluations to 1 %", "evaluations that restarts need on average until one reaches the "
          "gap, which may exceed one run's budget: all evaluations of all runs, up to the hit, "
          "divided by the number of hits; in brackets a 95 % interval"),
-        ("(run, target) pairs reached", f"each run has {len(CURVE_TARGETS)} targets, gaps from "
-         "100 % to 0.0001 %; the share of the targets of all runs that are reached so far"),
+        ("(run, target) pairs reached", f"each run has {len(gaps.CURVE_TARGETS)} targets, gaps "
+         "from 100 % to 0.0001 %; the share of the targets of all runs that are reached so far"),
         ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
          "local searches from random starts"),
         ("death-penalty, stretch, rescale", "under Settings: the treatment of durations that "

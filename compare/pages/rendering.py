@@ -11,7 +11,19 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from ...problem import visible
-from ..blocks import Block, CardShown, Claimed, Drawn, Folded, Grid, Page, Prose, Terms, link, slug
+from ..blocks import (
+    Block,
+    CardShown,
+    Claimed,
+    Drawn,
+    Folded,
+    Page,
+    Prose,
+    Terms,
+    doi_link,
+    link,
+    slug,
+)
 from ..pictures import embedded
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -38,6 +50,7 @@ def environment() -> Environment:
     found.globals["zip"] = zip
     found.filters["slug"] = slug
     found.filters["link"] = link
+    found.filters["doi_link"] = doi_link
     found.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
     found.filters["unescaped"] = Markup
     return found
@@ -70,8 +83,8 @@ def markdown(page: Page) -> str:
     GitHub-flavoured Markdown, in which text from case files is plain text.
     """
     parts = [f"# {plain(page.title)}", plain(page.trail)]
-    if page.doi_link:
-        parts.append(f"[{plain(page.doi)}]({page.doi_link})")
+    if doi_link(page.doi):
+        parts.append(f"[{plain(page.doi)}]({doi_link(page.doi)})")
     for section in page.sections:
         parts.append(f"## {plain(section.title)}")
         parts += [_block(page, block) for block in section.blocks]
@@ -89,7 +102,7 @@ def _block(page: Page, block: Block) -> str:
         if block.weight == "heading":
             return f"### {plain(block.text)}"
         word = f"**{plain(block.word)}** " if block.word else ""
-        link = f" [{plain(block.doi)}]({block.doi_link})" if block.doi_link else ""
+        link = f" [{plain(block.doi)}]({doi_link(block.doi)})" if doi_link(block.doi) else ""
         return f"{word}{plain(block.text)}{link}"
     if isinstance(block, Terms):
         return "\n".join(f"- **{plain(name)}**: {_line(said.text)}" for name, said in block.cells)
@@ -103,25 +116,17 @@ def _block(page: Page, block: Block) -> str:
         card = "\n".join(f"- {_line(line)}" for line, _ in block.sentences)
         return card if block.drawn is None else f"{card}\n\n{_block(page, block.drawn)}"
     if isinstance(block, Claimed):
-        return _claimed(block)
-    return _grid(block)
-
-
-def _claimed(block: Claimed) -> str:
-    place = "; ".join(x for x in (block.where, block.printed, block.holds) if x)
-    head = f"- **{plain(block.verdict.text)}**: {_line(block.text)} ({_line(place)})"
-    answer = [block.answer] if block.answer else []
-    reasons = (*block.why, *block.more, *block.beside, *map(str, block.caveats), *answer)
-    return "\n".join([head, *(f"  - {_line(reason)}" for reason in reasons)])
-
-
-def _grid(grid: Grid) -> str:
-    rows = [
-        "| " + " | ".join(_line(name) for name in grid.columns) + " |",
-        "|" + "---|" * len(grid.columns),
-        *("| " + " | ".join(map(_line, grid.texts(row))) + " |" for row in grid.rows),
+        place = "; ".join(x for x in (block.where, block.printed, block.holds) if x)
+        head = f"- **{plain(block.verdict.text)}**: {_line(block.text)} ({_line(place)})"
+        answer = [block.answer] if block.answer else []
+        reasons = (*block.why, *block.more, *block.beside, *map(str, block.caveats), *answer)
+        return "\n".join([head, *(f"  - {_line(reason)}" for reason in reasons)])
+    lines = [
+        "| " + " | ".join(map(_line, block.columns)) + " |",
+        "|" + "---|" * len(block.columns),
+        *("| " + " | ".join(map(_line, block.texts(row))) + " |" for row in block.rows),
     ]
-    return (f"{plain(grid.caption)}\n\n" if grid.caption else "") + "\n".join(rows)
+    return (f"{plain(block.caption)}\n\n" if block.caption else "") + "\n".join(lines)
 
 
 def _line(text: str) -> str:

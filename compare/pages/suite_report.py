@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from ...problem import QUANTITIES, Limits, Problem, visible
+from ...problem import QUANTITIES, Problem, visible
 from ...problem.suite import BenchmarkInstance, plain_text, suite_version
 from ..blocks import Block, Page, Prose, Section, Terms, instance_terms, suite_table, table
 from .rendering import page_text
@@ -76,19 +76,14 @@ def _verified(one: BenchmarkInstance) -> tuple[Block, ...]:
     )
 
 
-def _sizes(limits: Limits, quantity: str) -> list[str]:
-    """Each joint's limit in digits, with both sides where they differ in size."""
-    low, high = (x.tolist() for x in limits.ends(quantity))
-    return [
-        (f"{b:.6g}" if math.isfinite(b) else "none") if -a == b else f"{a:.6g} to {b:.6g}"
-        for a, b in zip(low, high, strict=True)
-    ]
-
-
 def _limits(problem: Problem) -> Block:
-    limits = problem.limits
-    rows = [
-        (f"{name} (rad/s{power})", *_sizes(limits, name))
-        for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True)
-    ]
+    """Each joint's limits in digits, with both sides where they differ in size."""
+    rows = []
+    for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True):
+        sides = zip(*(x.tolist() for x in problem.limits.ends(name)), strict=True)
+        sizes = [
+            (f"{b:.6g}" if math.isfinite(b) else "none") if -a == b else f"{a:.6g} to {b:.6g}"
+            for a, b in sides
+        ]
+        rows.append((f"{name} (rad/s{power})", *sizes))
     return table(("limit", *(f">joint {label}" for label in problem.joints)), rows)

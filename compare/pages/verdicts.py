@@ -251,18 +251,12 @@ def foundations(one: CaseAudit) -> list[Section]:
         if a.open:
             points = tuple((str(i), line) for i, line in enumerate(a.open, start=1))
             choices.append(Folded(f"Left open for {a.name}", (Terms(points),)))
+    shown = (Terms(readings),) if len(readings) > 1 else ()
+    unread = (table(("where", "what", "why"), lost),) if lost else ()
     parts: tuple[tuple[str, str, tuple[Block, ...]], ...] = (
-        (
-            "readings",
-            "Readings and why they are admissible",
-            (Terms(readings),) if len(readings) > 1 else (),
-        ),
+        ("readings", "Readings and why they are admissible", shown),
         ("assumptions", "Points that the text leaves open, and the choices made", tuple(choices)),
-        (
-            "not-checkable",
-            "Not checkable from the text",
-            (table(("where", "what", "why"), lost),) if lost else (),
-        ),
+        ("not-checkable", "Not checkable from the text", unread),
     )
     return [Section(*part, folded=True) for part in parts]
 

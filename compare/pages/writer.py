@@ -28,10 +28,9 @@ from ..blocks import (
 from ..documents import AuditDocument, ClaimVerdict, json_text, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
-from .exhibits import exhibits_of_motion, exhibits_of_search
+from .exhibits import exhibits_of_motion, exhibits_of_search, other_instances
 from .folders import check_folder, write_folder
 from .glossary import glossary
-from .instances import other_instances
 from .numbers import card_picture, optima, reached_runs, sensitivities, where_time_goes
 from .readings import side_by_side
 from .rendering import markdown, page_text

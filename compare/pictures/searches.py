@@ -142,7 +142,10 @@ def _panel(
         colour, line = series(at)
         gaps = 100 * (traces / optimum - 1)
         iterations = np.arange(gaps.shape[1], dtype=np.float64)
-        curves = [_stairs(iterations, g) for g in _drawn(gaps)]
+        # Drawn one by one are all runs, or some by rank from the best end to the worst.
+        ranks = np.linspace(0, len(gaps) - 1, min(len(gaps), _RUNS)).round().astype(np.intp)
+        chosen = np.argsort(gaps[:, -1], kind="stable")[ranks]
+        curves = [_stairs(iterations, g) for g in gaps[chosen]]
         axes.add_collection(LineCollection(curves, colors=colour, linewidths=0.5, alpha=0.28))
         # Quantiles that are runs: a run without answer is infinite and can't be averaged.
         bands = np.quantile(gaps, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
@@ -166,14 +169,6 @@ def _panel(
     axes.set_ylim(min(1.6 * low, -0.5 * _LINEAR), top)
     axes.set_xlim(0, max(t.shape[1] - 1 for t in panel.values()))
     light_grid(axes, "y")
-
-
-def _drawn(gaps: Array) -> Array:
-    """The runs that are drawn one by one: all, or spread by rank from the best end to the worst."""
-    if len(gaps) <= _RUNS:
-        return gaps
-    ranks = np.linspace(0, len(gaps) - 1, _RUNS).round().astype(np.intp)
-    return gaps[np.argsort(gaps[:, -1], kind="stable")[ranks]]
 
 
 def _stairs(iterations: Array, values: Array) -> Array:
@@ -331,7 +326,15 @@ def instances_picture(result: InstancesResult, *, title: str) -> Picture:
         panels = figure.subplots(1, 3, sharey=True, width_ratios=(1.25, 1.25, 1.0))
         for axes, effect in zip(panels, Effect, strict=True):
             _effect_panel(axes, result, effect)
-        names = [_label(result, reading) for reading in result.readings]
+        names = []
+        for reading in result.readings:
+            missing = sum(
+                distribution(result.reductions(reading, effect, at)).missing
+                for effect in Effect
+                for at in _objectives(result, effect)
+            )
+            beside = f"\n{missing} pairs without answer" if missing else ""
+            names.append(shown(result.label(reading), 24, 3) + beside)
         name_rows(panels[0], names, 0.6)
         figure.legend(*_legend(result), loc="outside lower left", ncols=4)
         finish(figure)
@@ -342,17 +345,6 @@ def _objectives(result: InstancesResult, effect: Effect) -> tuple[int, ...]:
     """Objectives that a panel tells apart; the optima have none."""
     many = min(_SHOWN_OBJECTIVES, len(result.block.objectives))
     return (0,) if effect is Effect.CURVE else tuple(range(many))
-
-
-def _label(result: InstancesResult, reading: str) -> str:
-    missing = sum(
-        distribution(result.reductions(reading, effect, at)).missing
-        for effect in Effect
-        for at in _objectives(result, effect)
-    )
-    return shown(result.label(reading), 24, 3) + (
-        f"\n{missing} pairs without answer" if missing else ""
-    )
 
 
 def _effect_panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:

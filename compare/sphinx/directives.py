@@ -225,10 +225,9 @@ def _under(
 class WaterfallShown(FromCase):
     """``{trajgap-waterfall} CASE``: where the time goes, as a picture and step by step."""
 
-    option_spec: ClassVar[dict[str, Any]] = {
-        "problem": directives.unchanged,
-        "reading": directives.unchanged,
-    }
+    option_spec: ClassVar[dict[str, Any]] = dict.fromkeys(
+        ("problem", "reading"), directives.unchanged
+    )
 
     def part_of(self, case: AuditedCase) -> list[Block]:
         """The first waterfall that fits the options."""
@@ -336,10 +335,7 @@ class CertificateShown(FromBlocks):
 class SuiteTable(FromBlocks):
     """``{trajgap-suite}``: the instances with their bounds, one a row; sortable."""
 
-    option_spec: ClassVar[dict[str, Any]] = {
-        "curve": directives.unchanged,
-        "labels": directives.unchanged,
-    }
+    option_spec: ClassVar[dict[str, Any]] = dict.fromkeys(("curve", "labels"), directives.unchanged)
 
     def made(self) -> list[Block]:
         """The table; ``:labels:`` is the prefix of the labels that instances have on the site."""

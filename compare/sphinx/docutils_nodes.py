@@ -7,7 +7,19 @@ from collections.abc import Iterable, Iterator, Sequence
 from docutils import nodes
 from sphinx.addnodes import only, pending_xref
 
-from ..blocks import Block, CardShown, Cell, Claimed, Drawn, Folded, Grid, Prose, Terms, slug
+from ..blocks import (
+    Block,
+    CardShown,
+    Cell,
+    Claimed,
+    Drawn,
+    Folded,
+    Grid,
+    Prose,
+    Terms,
+    doi_link,
+    slug,
+)
 from ..documents import capital
 from ..pictures import embedded
 
@@ -26,7 +38,12 @@ def _nodes(block: Block) -> Iterator[nodes.Node]:
         rows = [(Cell(name), value) for name, value in block.cells]
         yield _table(("what", "value"), rows, ("facts",))
     elif isinstance(block, Drawn):
-        yield from _picture(block)
+        # Inside a page a picture follows its theme; without HTML stands what it says.
+        inside, elsewhere = only(expr="format_html"), only(expr="not format_html")
+        picture = framed(embedded(block.document, block.name))
+        inside += nodes.raw("", picture, format="html")
+        elsewhere += _paragraph(block.description)
+        yield from (inside, elsewhere)
     elif isinstance(block, CardShown):
         box = nodes.container(classes=["trajgap-card"])
         box += [_paragraph(said, weight) for said, weight in block.sentences]
@@ -48,9 +65,9 @@ def _prose(block: Prose) -> nodes.Element:
     made = _paragraph("", block.weight)
     made += [_badge(block.word), nodes.Text(" ")] if block.word else []
     made += nodes.Text(block.text)
-    if block.doi_link:
+    if doi_link(block.doi):
         made += nodes.Text(" ")
-        made += nodes.reference("", f"doi:{block.doi}", refuri=block.doi_link)
+        made += nodes.reference("", f"doi:{block.doi}", refuri=doi_link(block.doi))
     return made
 
 
@@ -130,14 +147,6 @@ def _row(cells: Iterable[Cell]) -> nodes.row:
         inside += list(_inline(cell))
         made += nodes.entry("", inside)
     return made
-
-
-def _picture(drawn: Drawn) -> list[nodes.Node]:
-    """A picture inside the page, so that it follows the theme; without HTML what it says."""
-    inside, elsewhere = only(expr="format_html"), only(expr="not format_html")
-    inside += nodes.raw("", framed(embedded(drawn.document, drawn.name)), format="html")
-    elsewhere += _paragraph(drawn.description)
-    return [inside, elsewhere]
 
 
 def framed(inside: str) -> str:
