@@ -8,7 +8,7 @@ import typer
 
 from ...problem import compare_transcriptions
 from ..blocks import Block, Prose, table
-from ..documents import CaseDiffDocument, diff_document
+from ..documents import CaseDiffDocument, DifferingField
 from .input import read_case
 from .options import ENDS, AsJson, Out, Source, command_group
 from .output import answer
@@ -33,10 +33,11 @@ def diff(
     out: Out = None,
 ) -> int:
     """Compare two transcriptions of one paper field by field; exit code 1 if they differ."""
-    one, two = read_case(first), read_case(second)
-    found = compare_transcriptions(one, two, words)
-    document = answer(lambda: diff_document(first, second, found), _table, as_json, out)
-    return 1 if document.differences else 0
+    found = compare_transcriptions(read_case(first), read_case(second), words)
+    fields = tuple(map(DifferingField.of, found))
+    document = CaseDiffDocument(first=first, second=second, differences=fields)
+    answer(lambda: document, _table, as_json, out)
+    return 1 if fields else 0
 
 
 def _table(document: CaseDiffDocument) -> list[Block]:

@@ -23,22 +23,13 @@ from ...problem import Case, CaseError, Coupling, Problem, fit, shown_bound
 from ...verify import Subject
 from ..audits import Pair, Study, in_words
 from ..blocks import Block, Prose, seconds, table
-from ..documents import (
-    Answer,
-    SolveDocument,
-    SolveResult,
-    Why,
-    json_text,
-    reason,
-    solve_result,
-    value_or_none,
-)
+from ..documents import Answer, SolveDocument, SolveResult, Why, reason, solve_result, value_or_none
 from . import options as given
 from .certifying import certify_case
 from .input import Selected, naming, read_case, select
 from .motion_checking import MotionOptions
 from .motion_results import by_result, place, reasons
-from .output import emit, new_output, progress
+from .output import answer, new_output, progress
 from .solve_files import AskedSamples, points_case, write_motion, written_lines
 
 
@@ -214,21 +205,26 @@ def _solve_case(
         why = f"{len(problems)} problems; add --problem {problems[0]}"
         raise CaseError(case.file, "--samples", why)
     samples_file = None if asked is None else asked.file
-    with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
+
+    def made() -> SolveDocument:
         results, written = [], None
         retimings: _Retimings = {}
-        with progress("solve", len(selected)) as step, naming(case.file):
+        with (
+            new_output(samples_file, "--samples") as write_samples,
+            progress("solve", len(selected)) as step,
+            naming(case.file),
+        ):
             for one in selected:
                 step(in_words(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
-                    result, answer = _solved(case, one, starts, seed, prove, retimings)
+                    result, found = _solved(case, one, starts, seed, prove, retimings)
                 results.append(result)
                 if asked is not None and written is None:
-                    text, written = write_motion(one, answer, asked)
+                    text, written = write_motion(one, found, asked)
                     write_samples(text)
-        document = SolveDocument(results=tuple(results), written=written)
-        write(json_text(document))
-    emit(document, lambda shown: _tables(shown, case), as_json)
+        return SolveDocument(results=tuple(results), written=written)
+
+    answer(made, lambda shown: _tables(shown, case), as_json, out)
     return 0
 
 

@@ -33,7 +33,6 @@ from .benched import (
     apart as apart,
     bench_cells as bench_cells,
     by_search as by_search,
-    closest as closest,
     gap_cell as gap_cell,
     percent as percent,
     two_digits as two_digits,
@@ -115,6 +114,7 @@ from .finding import (
 from .lookups import (
     CaseDiffDocument as CaseDiffDocument,
     CasesDocument as CasesDocument,
+    DifferingField as DifferingField,
     ExplainDocument as ExplainDocument,
     ExplainedRule as ExplainedRule,
     ExplainedWord as ExplainedWord,
@@ -122,7 +122,6 @@ from .lookups import (
     SuiteDocument as SuiteDocument,
     SuiteShowDocument as SuiteShowDocument,
     cases_document as cases_document,
-    diff_document as diff_document,
     instance_document as instance_document,
     show_document as show_document,
     suite_document as suite_document,

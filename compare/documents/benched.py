@@ -121,8 +121,16 @@ class BenchResult(Entry):
 
     @property
     def verdict(self) -> str:
-        """Which optimiser is closest, in a sentence."""
-        return closest(self.standings)
+        """Which optimiser is closest to the optimum by its median gap, in a sentence."""
+        known = [(s.median, s) for s in self.standings if isinstance(s.median, float)]
+        if not known:
+            return "No optimiser found a feasible answer in more than half of its runs."
+        median, first = known[0]
+        runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
+        said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"
+        for gap, second in known[1:2]:
+            said += f"; next: {second.optimizer} ({percent(gap)})"
+        return f"{said}."
 
     def __str__(self) -> str:
         names = [name.lstrip(">") for name in BENCH_COLUMNS]
@@ -202,20 +210,6 @@ SHOWN_GAPS = (0.01, 1e-4)
 def gap_cell(gap: float | Why) -> str:
     """A gap in a table."""
     return "none" if isinstance(gap, Why) else percent(gap)
-
-
-def closest(standings: tuple[Standing, ...]) -> str:
-    """Which optimiser is closest to the optimum by its median gap, in a sentence."""
-    known = [(s.median, s) for s in standings if isinstance(s.median, float)]
-    if not known:
-        return "No optimiser found a feasible answer in more than half of its runs."
-    median, first = known[0]
-    runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
-    said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"
-    if len(known) > 1:
-        second = known[1]
-        said += f"; next: {second[1].optimizer} ({percent(second[0])})"
-    return f"{said}."
 
 
 def percent(gap: float) -> str:

@@ -106,13 +106,6 @@ POINTS = "rests on doubtful way-points"
 """How one begins where a claim was judged by motions through way-points that a finding doubts."""
 BUILT = "true of any such curve"
 """How one begins where nothing that is printed could make the claim false."""
-_KINDS = {
-    Nature.DEFINITION: CaveatKind.DEFINITION,
-    Nature.IDENTITY: CaveatKind.IDENTITY,
-    Nature.AIM: CaveatKind.AIM,
-    Nature.JUDGEMENT: CaveatKind.JUDGEMENT,
-}
-"""Kinds of caveats where nothing is claimed that numbers could decide."""
 _BESIDE = {
     CaveatKind.BUILT: (ClaimVerdict.SUPPORTED, "by construction"),
     CaveatKind.DEFINITION: (ClaimVerdict.NOT_CHECKABLE, "a definition"),
@@ -136,7 +129,7 @@ def nature_caveat(nature: Nature) -> Caveat:
         Nature.AIM: "it states a goal, not a result",
         Nature.JUDGEMENT: "it names no measure that could be computed",
     }
-    kind = _KINDS[nature]
+    kind = CaveatKind[nature.name]
     return Caveat(kind, _BESIDE[kind][1], why[nature])
 
 
@@ -203,7 +196,9 @@ def same_reason(text: str, where: str, own: str) -> str:
 def claims_nothing(judgement: Judgement) -> bool:
     """Whether a claim that is not checkable states no result: a definition, an aim and the like."""
     undecided = judgement.verdict is ClaimVerdict.NOT_CHECKABLE
-    return undecided and any(c.kind in _KINDS.values() for c in judgement.caveats)
+    return undecided and any(
+        c.kind and c.kind.name in Nature.__members__ for c in judgement.caveats
+    )
 
 
 def evident(judgement: Judgement) -> bool:

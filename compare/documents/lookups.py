@@ -13,7 +13,6 @@ from ...problem.cases import (
     AlgorithmBlock,
     AnyClaim,
     Assumption,
-    Difference,
     InstancesBlock,
     NotCheckable,
     ProblemBlock,
@@ -47,17 +46,12 @@ class CasesDocument(Document):
 
 def cases_document(cases: Iterable[Case]) -> CasesDocument:
     """Document of `cases`: what is shipped."""
-    return CasesDocument(
-        cases=tuple(
-            ListedCase.of(
-                case,
-                problems=tuple(p.id for p in case.problems),
-                readings=tuple(r.id for r in case.readings),
-                claims=len(case.claims),
-            )
-            for case in cases
-        )
-    )
+
+    def listed(case: Case) -> ListedCase:
+        problems, readings = tuple(p.id for p in case.problems), tuple(r.id for r in case.readings)
+        return ListedCase.of(case, problems=problems, readings=readings, claims=len(case.claims))
+
+    return CasesDocument(cases=tuple(map(listed, cases)))
 
 
 def _as_in_the_file(block: BaseModel) -> dict[str, Any]:
@@ -161,12 +155,6 @@ class CaseDiffDocument(Document):
     """Name of the second file."""
     differences: tuple[DifferingField, ...]
     """Empty if the transcriptions agree."""
-
-
-def diff_document(first: str, second: str, found: Iterable[Difference]) -> CaseDiffDocument:
-    """Document of `case diff`: what was found between two files."""
-    differing = tuple(map(DifferingField.of, found))
-    return CaseDiffDocument(first=first, second=second, differences=differing)
 
 
 class ExplainedRule(Entry):
