@@ -1,27 +1,25 @@
-from .audits import (
-    REACHED_MEANING as REACHED_MEANING,
-    card_shown as card_shown,
-    counts_said as counts_said,
-    distances_table as distances_table,
-    reached_table as reached_table,
-    reference as reference,
-    steps_table as steps_table,
-)
 from .benches import (
+    ONE_BY_ONE as ONE_BY_ONE,
     bench_blocks as bench_blocks,
     board_table as board_table,
     brief_board as brief_board,
+    instance_terms as instance_terms,
     overall_blocks as overall_blocks,
+    share_cell as share_cell,
+    suite_table as suite_table,
 )
 from .claims import (
+    REACHED_MEANING as REACHED_MEANING,
     answered as answered,
+    card_shown as card_shown,
     claims_shown as claims_shown,
+    counts_said as counts_said,
+    distances_table as distances_table,
     names as names,
+    reached_table as reached_table,
+    reference as reference,
     shown_once as shown_once,
-)
-from .suite import (
-    instance_terms as instance_terms,
-    suite_table as suite_table,
+    steps_table as steps_table,
 )
 from .tree import (
     GLOSSARY as GLOSSARY,

@@ -43,11 +43,6 @@ class Prose:
     doi: str = ""
     """Of what the text names, behind it; empty for none."""
 
-    @property
-    def doi_link(self) -> str:
-        """Address of what it names."""
-        return doi_link(self.doi)
-
     kind: ClassVar[str] = "prose"
 
 
@@ -268,19 +263,11 @@ class Page:
         """All pictures, folded or not, in order."""
         return tuple(one for section in self.sections for one in _drawn(section.blocks))
 
-    @property
-    def doi_link(self) -> str:
-        """Address of the paper; empty if the DOI is none."""
-        return doi_link(self.doi)
-
 
 def doi_link(doi: str) -> str:
-    """Address of a paper; empty where the DOI is none."""
-    return f"https://doi.org/{quote(doi, '/')}" if _DOI.fullmatch(doi) else ""
-
-
-_DOI = re.compile(r"10\.[0-9]{4,9}/[^\s<>\"]+")
-"""A DOI, as far as it can be told; other text is shown and leads nowhere."""
+    """Address of a paper; empty where the text is no DOI, as far as that can be told."""
+    known = re.fullmatch(r"10\.[0-9]{4,9}/[^\s<>\"]+", doi)
+    return f"https://doi.org/{quote(doi, '/')}" if known else ""
 
 
 def _drawn(blocks: Sequence[Block]) -> Iterator[Drawn]:

@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from .options import ENDS, INTERRUPTED
+from .options import ENDS, INTERRUPTED, command_group
 
 COMMANDS = {
     "cases": "List the published cases.",
@@ -58,7 +58,7 @@ def _loaded(name: str) -> Any:
     """One command as the parser has it."""
     found = getattr(import_module(f".{name}_command", __package__), name)
     if not isinstance(found, typer.Typer):
-        alone = typer.Typer(add_completion=False, context_settings=_HELP, rich_markup_mode=None)
+        alone = command_group()
         alone.command(name, epilog=ENDS)(found)
         found = alone
     command = typer.main.get_command(found)
@@ -66,17 +66,8 @@ def _loaded(name: str) -> Any:
     return command
 
 
-_HELP = {"help_option_names": ["-h", "--help"]}
-"""Options that print the help."""
-
 # The commands of this program.
-app = typer.Typer(
-    cls=_Commands,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    context_settings=_HELP,
-)
+app = command_group(cls=_Commands, pretty_exceptions_enable=False)
 
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
@@ -137,15 +128,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _fail("interrupted", INTERRUPTED)
     finally:
-        _settle()
-
-
-def _settle() -> None:
-    """Drop what standard output did not take: the interpreter would try again at its end."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        try:
+            sys.stdout.flush()
+        except OSError:
+            # The interpreter would try again at its end.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @cache

@@ -10,13 +10,13 @@ from typing import Annotated
 import typer
 
 from ...problem import Case, published_ids
-from .. import audits
+from .. import audits, pages
 from ..audits import Study, in_words
 from ..blocks import Block, Prose, card_shown, counts_said, distances_table, reached_table, table
 from ..documents import (
+    AGAINST,
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
-    Advice,
     AuditDocument,
     AuditedCase,
     ClaimVerdict,
@@ -30,15 +30,12 @@ from ..documents import (
     facts,
     qualified,
     tally,
+    value_or_none,
 )
-from ..pages import check_report_folder
 from .certifying import read_certificates
 from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
 from .output import emit, kept_proofs, new_output, progress, say
-
-AUDIT_FOLDER = Path("trajgap-audit")
-"""Where the pages go, unless the command line says otherwise."""
 
 
 def audit(
@@ -101,13 +98,11 @@ def audit(
         for algorithm in case.algorithms:
             study.algorithm(algorithm.id)
     given = [] if certificates is None else read_certificates(certificates)
-    folder = out if out is not None or as_json else AUDIT_FOLDER
+    folder = out if out is not None or as_json else Path("trajgap-audit")
     if folder is not None:
-        check_report_folder(folder, chosen)
+        pages.check_report_folder(folder, chosen)
     if crate is not None:
-        from ..pages import crate_library
-
-        crate_library()
+        pages.crate_library()
     with new_output(crate, "--crate") as bundle, progress("audit") as step:
         report = audits.audit(
             chosen,
@@ -126,15 +121,11 @@ def audit(
             cache=not no_cache,
         )
         if folder is not None:
-            from ..pages import write_report
-
             step("pages and pictures")
-            write_report(report, folder)
+            pages.write_report(report, folder)
         if crate is not None:
-            from ..pages import crate_of
-
             step("archive")
-            bundle(crate_of(report))
+            bundle(pages.crate_of(report))
     read = [one.case for one in report.cases]
     emit(report.document, lambda shown: audited(shown, read), as_json)
     if folder is not None and not as_json:
@@ -156,17 +147,25 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
         if rows:
             parts.append(table(("verdict", "readings", "~claim and its place"), rows))
         parts += [Prose(said, "note") for said in _unchecked(case)]
-        advice = () if isinstance(case.advice, Why) else case.advice
-        parts += _advised(advice) if advice else [Prose(one) for one in _causes(case)]
+        advice = value_or_none(case.advice) or ()
+        parts += [Prose(""), Prose("Before you submit", "heading")] if advice else []
+        for one in advice:
+            style = "against" if one.urgency is Urgency.CONTRADICTED else ""
+            parts.append(Prose(f"{one.urgency}, {one.where}: {one.says}", style))
+            parts.append(Prose(f"  → {one.change}"))
+        parts += [Prose(one) for one in _causes(case)] if not advice else []
         parts += [Prose(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
-        for title, runs in searches[:_SEARCHES]:
+        # Two, such as each joint separately and all together; the pages have all.
+        for title, runs in searches[:2]:
+            # Columns of a page that do not fit a terminal: best, quartiles, evaluations.
+            columns = ("algorithm", "limits broken", "median, its gap", "no answer")
             parts += [
                 Prose(""),
                 Prose(f"How near the paper's algorithms get: {title}"),
-                replace(reached_table(runs).without(*_NO_ROOM), columns=_RUNS),
+                replace(reached_table(runs).without(3, 4, 6), columns=columns),
             ]
-        more = len(searches) - _SEARCHES
+        more = len(searches) - 2
         parts += [Prose(f"{more} more searches are on the pages.", "note")] if more > 0 else []
         parts += [Prose(f"{words}: {value}", "note") for words, value in facts(case)]
     return parts
@@ -176,32 +175,15 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
     """Verdict, readings and words of each claim; the same words in several places are one row."""
     stated = {one.claim: one for one in case.claims}
     places: dict[tuple[str, str, str], list[str]] = {}
-    for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict)):
+    # What speaks against a claim comes first.
+    order = (*AGAINST, ClaimVerdict.SUPPORTED, ClaimVerdict.NOT_CHECKABLE)
+    for v in sorted(case.verdicts, key=lambda v: order.index(v.verdict)):
         key = (qualified(v.verdict, v.beside), _under(v), stated[v.claim].text)
         places.setdefault(key, []).append(stated[v.claim].where)
     return [
         (verdict, under, f"{text} ({'; '.join(where)})")
         for (verdict, under, text), where in places.items()
     ]
-
-
-_SEARCHES = 2
-"""Searches that a terminal shows, such as that of each joint separately and of all together."""
-_NO_ROOM = (3, 4, 6)
-"""Columns of a page that do not fit a terminal: best, quartiles, evaluations."""
-_RUNS = ("algorithm", "limits broken", "median, its gap", "no answer")
-"""The others, in words that fit one."""
-_REASONS = 3
-"""Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
-those of a long one fill a page."""
-_ORDER = (
-    ClaimVerdict.REFUTED,
-    ClaimVerdict.INCONSISTENT,
-    ClaimVerdict.DEPENDS,
-    ClaimVerdict.SUPPORTED,
-    ClaimVerdict.NOT_CHECKABLE,
-)
-"""Claims in the table: what speaks against them first."""
 
 
 def _unchecked(case: AuditedCase) -> list[str]:
@@ -212,25 +194,15 @@ def _unchecked(case: AuditedCase) -> list[str]:
         # What only informs stands with the claim on its page: it is not a reason.
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
             reasons.setdefault(one.sentences[0].rstrip("."), []).append(places[one.claim])
+    # Reasons that a terminal shows for claims that cannot be checked: enough for a first case,
+    # while those of a long one fill a page.
     lines = [
         f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."
-        for why, where in list(reasons.items())[:_REASONS]
+        for why, where in list(reasons.items())[:3]
     ]
     more = len(reasons) - len(lines)
     rest = [f"{more} more reason{'s are' if more > 1 else ' is'} on the pages."] if more else []
     return lines + rest
-
-
-def _advised(advice: Sequence[Advice]) -> list[Block]:
-    """What to change, each with its place; what is found first, then how to fix it."""
-    parts: list[Block] = [Prose(""), Prose("Before you submit", "heading")]
-    for one in advice:
-        style = "against" if one.urgency is Urgency.CONTRADICTED else ""
-        parts += [
-            Prose(f"{one.urgency}, {one.where}: {one.says}", style),
-            Prose(f"  → {one.change}"),
-        ]
-    return parts
 
 
 def _under(judgement: Judgement) -> str:
@@ -266,7 +238,8 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
         under = f"; {in_words(case, pid, one.reading)}" if several else ""
         grid = distances_table(one, f"Where the time goes{under}", ends=False)
         if grid.rows:
-            yield grid.without(_HOW)
+            # Column of what was found how, which has no room on a terminal.
+            yield grid.without(4)
         notes |= dict.fromkeys(one.without_optimum)
         notes |= dict.fromkeys(
             f"{capital(step.name)}: {step.time}."
@@ -274,7 +247,3 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
             if isinstance(step.time, Why) and step.name not in (*OPTIMA_STEPS, OPTIMUM_RETIMED)
         )
     yield from (Prose(said, "note") for said in notes)
-
-
-_HOW = 4
-"""Column of what was found how, which has no room on a terminal."""

@@ -1,13 +1,14 @@
-"""The command `bench`: optimisers on a case or on instances of the suite, against the optimum."""
+"""The command `bench`: optimisers against the optimum, or among the committed results."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any
 
 import typer
@@ -17,31 +18,13 @@ from ...nlp import Evidence, Solution, printed_problem_or_none, solve
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
-from .. import pages
+from .. import gaps, pages
 from ..audits import asked_as
-from ..blocks import Block, Prose, bench_blocks, overall_blocks
-from ..documents import (
-    SHOWN_GAPS,
-    BenchDocument,
-    BenchResult,
-    Reference,
-    known,
-    noted,
-)
-from ..gaps import (
-    SECONDS,
-    SEEDS,
-    BenchPlan,
-    Runs,
-    Store,
-    measure_gaps,
-    on_this_machine,
-    plan_bench,
-    run_bench,
-)
+from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
+from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, known, noted
 from .input import Selected, naming, read_case, select
-from .options import MOST, ONE_BY_ONE, ProblemId, run_store, run_workers
-from .output import NEVER_RAN, emit, progress, say
+from .options import MOST, ProblemId, run_store, run_workers
+from .output import NEVER_RAN, emit, progress, rendered, say
 
 
 def bench(
@@ -109,7 +92,7 @@ def bench(
     ] = True,
     seconds: Annotated[
         float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
-    ] = SECONDS,
+    ] = gaps.SECONDS,
     workers: Annotated[int, run_workers()] = 1,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
@@ -134,28 +117,23 @@ def bench(
     chosen = [optimizer_name(name) for text in optimizer for name in text.split(",") if name]
     set_here = _settings(settings or [])
     if against is not None:
-        from . import committed_board as board
-
         unused = {"--json": as_json, "--out": out, "--problem": problem, "--reading": reading}
         for name, value in unused.items():
             if value:
                 raise typer.BadParameter(f"{name} cannot be combined with --against")
-        return board.stand_against(
-            against,
-            case,
-            chosen,
-            set_here,
-            seeds or board.SEEDS,
-            budget or board.BUDGET,
-            handling,
-            seconds,
-            workers,
-            store,
-        )
+        if against != gaps.LEADERBOARD:
+            raise CaseError("--against", "", f"{against!r} is unknown; use {gaps.LEADERBOARD}")
+        # Evaluations and seeds are those of the leaderboard's first table.
+        runs = budget or 1000, handling, seeds or 15, seconds
+        return _stand_among(case, chosen, set_here, runs, workers, store)
     if case is None:
         raise typer.BadParameter("name a CASE, FILE or SUITE, or --against leaderboard")
-    cases = _cases(case)
-    folder = out if out is not None or as_json else BENCH_FOLDER
+    # One case, or the instances of the suite that are named.
+    several = case == SUITE_PREFIX.rstrip(":") or (
+        case.startswith(SUITE_PREFIX) and any(sign in case for sign in ",*?[")
+    )
+    cases = [one.case() for one in select_instances(case)] if several else [read_case(case)]
+    folder = out if out is not None or as_json else Path("trajgap-bench")
     if folder is not None:
         pages.check_bench_folder(folder)
     asked = []
@@ -166,10 +144,10 @@ def bench(
         }
         with naming(stated.file):
             for one in select(stated, problem, reading or stated.default_reading.id, "shared"):
-                plan = plan_bench(
+                plan = gaps.plan_bench(
                     one.problem,
                     chosen,
-                    seeds=seeds or SEEDS,
+                    seeds=seeds or gaps.SEEDS,
                     budget=budget,
                     handling=handling,
                     settings=settled,
@@ -178,7 +156,15 @@ def bench(
                     reading="" if len(cases) > 1 else one.reading_id,
                     seconds=seconds,
                 )
-                asked.append(_Asked(stated, one, _coupling_said(stated, one, plan)))
+                own_coupling = stated.problem(one.problem_id, one.reading_id).coupling
+                if own_coupling is not Coupling.SHARED and len(one.problem.joints) > 1:
+                    note = (
+                        "The case searches each joint separately; here all joints share their "
+                        "durations. The audit compares the paper's total with another optimum, "
+                        "which follows from the joints' own optima."
+                    )
+                    plan = replace(plan, notes=(note, *plan.notes))
+                asked.append(_Asked(stated, one, plan))
     results = _run(asked, workers, store)
     if folder is not None:
         pages.write_bench(results, folder)
@@ -187,19 +173,6 @@ def bench(
         say(f"page: {folder / 'index.html'}\n")
     every = [one for result, _ in results for one in result.standings]
     return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
-
-
-BENCH_FOLDER = Path("trajgap-bench")
-"""Where the page goes, unless the command line says otherwise."""
-
-
-def _cases(source: str) -> list[Case]:
-    """One case, or the instances of the suite that are named."""
-    word = SUITE_PREFIX.rstrip(":")
-    several = source == word or (
-        source.startswith(SUITE_PREFIX) and any(sign in source for sign in ",*?[")
-    )
-    return [one.case() for one in select_instances(source)] if several else [read_case(source)]
 
 
 def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
@@ -234,25 +207,13 @@ def _own(case: Case, chosen: Sequence[str], iterations: bool) -> dict[str, dict[
     return found
 
 
-def _coupling_said(case: Case, one: Selected, plan: BenchPlan) -> BenchPlan:
-    stated = case.problem(one.problem_id, one.reading_id).coupling
-    if stated is Coupling.SHARED or len(one.problem.joints) == 1:
-        return plan
-    note = (
-        "The case searches each joint separately; here all joints share their durations. The audit "
-        "compares the paper's total with another optimum, which follows from the joints' own "
-        "optima."
-    )
-    return replace(plan, notes=(note, *plan.notes))
-
-
 @dataclass(frozen=True, eq=False)
 class _Asked:
     """One problem with its runs, before they are made."""
 
     case: Case
     selected: Selected
-    plan: BenchPlan
+    plan: gaps.BenchPlan
 
     @property
     def words(self) -> str:
@@ -267,7 +228,7 @@ class _Asked:
 
 def _run(
     asked: Sequence[_Asked], workers: int, kept: Path | None
-) -> list[tuple[BenchResult, Runs]]:
+) -> list[tuple[BenchResult, gaps.Runs]]:
     results = []
     with progress("solve", len(asked)) as solving:
         optima = []
@@ -276,14 +237,14 @@ def _run(
             with naming(one.case.file):
                 optima.append(_optimum(one.case, one.selected))
     with ExitStack() as stack:
-        store = None if kept is None else stack.enter_context(Store(kept))
-        engine = stack.enter_context(on_this_machine(workers))
+        store = None if kept is None else stack.enter_context(gaps.Store(kept))
+        engine = stack.enter_context(gaps.on_this_machine(workers))
         total = sum(len(one.plan.trials) for one in asked)
         step = stack.enter_context(progress("first runs", total, rate=True))
         for one, optimum in zip(asked, optima, strict=True):
             with naming(one.case.file):
-                runs = run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
-                result = measure_gaps(runs, optimum).model_copy(update={"words": one.words})
+                runs = gaps.run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
+                result = gaps.measure_gaps(runs, optimum).model_copy(update={"words": one.words})
                 results.append((result, runs))
     return results
 
@@ -306,14 +267,11 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
     return answer
 
 
-_RESTARTS = (
-    "Evaluations to a gap: the number that restarts need on average until one run reaches it; it "
-    "may exceed the budget of one run."
-)
-"""Said under a table with such a number."""
-
-
 def _tables(document: BenchDocument) -> list[Block]:
+    note = (
+        "Evaluations to a gap: the number that restarts need on average until one run reaches it; "
+        "it may exceed the budget of one run."
+    )
     parts: list[Block] = []
     if document.overall:
         parts += overall_blocks(document.overall)
@@ -325,5 +283,119 @@ def _tables(document: BenchDocument) -> list[Block]:
             for target in one.targets
             if target.gap in SHOWN_GAPS
         )
-        parts += [Prose(_RESTARTS, "note"), Prose("")] if beyond else [Prose("")]
+        parts += [Prose(note, "note"), Prose("")] if beyond else [Prose("")]
     return parts
+
+
+_MIDDLE = gaps.SOLVED.index(1e-3)
+"""Place of the target by which the leaderboard is sorted: 0.1 %."""
+
+
+def _stand_among(
+    source: str | None,
+    names: Sequence[str],
+    settings: Mapping[str, Mapping[str, Any]],
+    asked: tuple[int, str, int, float],
+    workers: int,
+    store: Path | None,
+) -> int:
+    """Run optimisers on instances of the leaderboard, all by default, and print where they stand.
+
+    `asked`: evaluations, handling, seeds and seconds of the runs.
+    """
+    budget, handling, seeds, seconds = asked
+    board = _board(budget, handling)
+    instances = _instances(board, source)
+    # None of the labels is one of the committed rows.
+    taken = {one.optimizer for one in board.standings} | set(board.missing)
+    labels = {f"{name} (now)" if name in taken else name: name for name in names}
+    plan = _plan(labels, settings, seeds, budget, handling, seconds, instances)
+    with ExitStack() as stack:
+        path = store or Path(stack.enter_context(TemporaryDirectory()), "runs.sqlite")
+        kept = stack.enter_context(gaps.Store(path))
+        engine = stack.enter_context(gaps.on_this_machine(workers))
+        step = stack.enter_context(progress("runs", len(plan)))
+
+        def show(now: gaps.StudySession) -> None:
+            step(f"{now.resumed + now.run:,} of {now.total:,} runs")
+
+        gaps.run_study(plan, kept, engine, progress=show)
+        own = list(gaps.summed_up(plan, kept))
+    theirs = [
+        row
+        for row in gaps.leaderboard_rows()
+        if (row.budget, row.handling) == (budget, handling)
+        and row.problem.partition("/")[0] in instances
+    ]
+    (found,) = gaps.boards([*theirs, *own])
+    standing = [one for one in found.standings if one.optimizer in labels]
+    many = f"{len(found.problems)} instance{'s' * (len(found.problems) > 1)}"
+    say(rendered([
+        *(Prose(_said(one, found), "heading") for one in standing),
+        Prose(""),
+        brief_board(found, labels),
+        Prose(
+            f"{handling}, {budget:,} evaluations, {many}. Rows with * were run now; the others "
+            "are the committed rows of the leaderboard."
+        ),
+    ]))  # fmt: skip
+    return NEVER_RAN if any(one.failed == one.runs for one in standing) else 0
+
+
+def _board(budget: int, handling: str) -> gaps.Board:
+    known = gaps.boards(gaps.leaderboard_rows())
+    budgets = sorted({one.budget for one in known})
+    handlings = sorted({one.handling for one in known})
+    if budget not in budgets:
+        said = ", ".join(map(str, budgets))
+        raise CaseError("--budget", "", f"the leaderboard has {said} evaluations, not {budget}")
+    if handling not in handlings:
+        said = " and ".join(handlings)
+        raise CaseError("--handling", "", f"the leaderboard has {said}, not {handling!r}")
+    return next(one for one in known if (one.budget, one.handling) == (budget, handling))
+
+
+def _instances(board: gaps.Board, source: str | None) -> tuple[str, ...]:
+    """Names of instances of the board, those that are asked for."""
+    names = [problem.partition("/")[0] for problem in board.problems]
+    if source is None:
+        return tuple(names)
+    asked = {one.name for one in select_instances(source)}
+    chosen = tuple(name for name in names if name in asked)
+    if not chosen:
+        some = ", ".join(SUITE_PREFIX + name for name in names[:3])
+        raise CaseError(source, "", f"not an instance of the leaderboard; it has {some}, ...")
+    return chosen
+
+
+def _plan(
+    labels: Mapping[str, str],
+    settings: Mapping[str, Mapping[str, Any]],
+    seeds: int,
+    budget: int,
+    handling: str,
+    seconds: float,
+    instances: Sequence[str],
+) -> gaps.StudyPlan:
+    """The study of these optimisers on these instances, as a study file states it."""
+    blocks = [
+        f"{{ name = {json.dumps(name)}, label = {json.dumps(label)}, settings = "
+        f"{{ {', '.join(f'{json.dumps(k)} = {json.dumps(v)}' for k, v in own.items())} }} }}"
+        for label, name in labels.items()
+        for own in [settings.get(name, {})]
+    ]
+    text = (
+        f"format = 1\nbudget = {budget}\nseeds = {seeds}\nseconds = {seconds}\n"
+        f"handlings = {json.dumps(handling)}\noptimizers = [{', '.join(blocks)}]\n"
+        f"[[problems]]\ncase = {json.dumps(SUITE_PREFIX + ','.join(instances))}\n"
+    )
+    return gaps.parse_study(text, "--optimizer", Path())
+
+
+def _said(one: gaps.Ranked, board: gaps.Board) -> str:
+    """Where an optimiser stands, in a sentence."""
+    share = 100 * one.solved[_MIDDLE][0]
+    return (
+        f"{one.optimizer}: place {board.place(one)} of {len(board.searches)}; {share:.0f} % of "
+        f"{one.runs} runs come within 0.1 % of the optimum."
+    )

@@ -8,18 +8,13 @@ import typer
 
 from ...problem import compare_transcriptions
 from ..blocks import Block, Prose, table
-from ..documents import CaseDiffDocument, diff_document, json_text
+from ..documents import CaseDiffDocument, DifferingField
 from .input import read_case
-from .options import ENDS, AsJson, Out, Source
-from .output import emit, new_output
+from .options import ENDS, AsJson, Out, Source, command_group
+from .output import answer
 
 # Commands on case files.
-case = typer.Typer(
-    add_completion=False,
-    rich_markup_mode=None,
-    no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+case = command_group(no_args_is_help=True)
 
 
 @case.callback(epilog=ENDS)
@@ -38,12 +33,11 @@ def diff(
     out: Out = None,
 ) -> int:
     """Compare two transcriptions of one paper field by field; exit code 1 if they differ."""
-    with new_output(out) as write:
-        one, two = read_case(first), read_case(second)
-        document = diff_document(first, second, compare_transcriptions(one, two, words))
-        write(json_text(document))
-    emit(document, _table, as_json)
-    return 1 if document.differences else 0
+    found = compare_transcriptions(read_case(first), read_case(second), words)
+    fields = tuple(map(DifferingField.of, found))
+    document = CaseDiffDocument(first=first, second=second, differences=fields)
+    answer(lambda: document, _table, as_json, out)
+    return 1 if fields else 0
 
 
 def _table(document: CaseDiffDocument) -> list[Block]:

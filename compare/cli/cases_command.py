@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from ...problem import published_ids
 from ..blocks import Block, table
-from ..documents import CasesDocument, cases_document, json_text
+from ..documents import CasesDocument, cases_document
 from .input import read_case
 from .options import AsJson, Out
-from .output import emit, new_output
+from .output import answer
 
 
 def cases(as_json: AsJson = False, out: Out = None) -> int:
     """List the published cases."""
-    with new_output(out) as write:
-        document = cases_document(read_case(name) for name in published_ids())
-        write(json_text(document))
-    emit(document, _table, as_json)
+    answer(lambda: cases_document(map(read_case, published_ids())), _table, as_json, out)
     return 0
 
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import signal
-import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -17,7 +14,6 @@ from typing import Any
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import StateFile, certificate_text, covered, fits, read_state, state_document
 from ...problem import Case, CaseError, Coupling, TrajgapError, file_name, shown_bound
-from ...problem.cases import case_files
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -34,33 +30,27 @@ from ..audits import in_words
 from ..blocks import Block, Prose
 from ..documents import CertifiedResult, CertifyDocument, Why, certify_result, json_text
 from .input import Selected, naming, select
+from .motion_results import by_question
 from .output import (
     Steps,
     check_certificates,
     emit,
+    interrupted_by,
     kept_proofs,
     new_output,
     progress,
     replace_output,
     say,
 )
-from .result_tables import by_question
 
-CERTIFICATE_FOLDER = Path("trajgap-certificates")
-"""Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
-_SPARE = 1.0
-"""Seconds after the time limit until which an earlier certificate is judged, as a new one is."""
-_SETTLED = (Outcome.CERTIFIED, Outcome.INFEASIBLE)
-"""Outcomes that leave nothing to prove."""
 
 
 @dataclass(frozen=True, eq=False)
 class Question:
     """One problem to certify: all joints together, or one that is optimised by itself."""
 
-    name: str
     selected: Selected
     asked: CertifiedQuestion
     problem: ExactProblem | str
@@ -106,7 +96,7 @@ def certify_case(
     chosen = select(case, problem, reading, coupling)
     asked = [q for one in chosen for q in _questions(case, one, subject)]
     states = _states(resume, asked)
-    folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
+    folder = Path("trajgap-certificates") if folder is None and not as_json else folder
     if not 0 <= gap < 1:
         why = f"{gap:g} is not a relative width; give 0 or more, below 1"
         raise CaseError(case.file, "--gap", why)
@@ -114,34 +104,38 @@ def certify_case(
         check_certificates(folder)
         _check_files(folder, asked)
     results: list[CertifiedResult] = []
+    settled = Outcome.CERTIFIED, Outcome.INFEASIBLE
     unsettled, kept, stop = False, 0, _Stop()
     with new_output(out) as write:
-        with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
+        with (
+            progress("certify", len(asked)) as step,
+            naming(case.file),
+            interrupted_by(stop.remember),
+        ):
             for one in asked:
                 if stop.asked:
                     break
                 step(one.words)
-                clock = Clock(seconds + _SPARE)
-                found: Certified | str = (
-                    one.problem
-                    if isinstance(one.problem, str)
-                    else certify(
+                clock = Clock(seconds + 1.0)  # of a second more to judge an earlier certificate
+                found: Certified | str
+                if isinstance(one.problem, str):
+                    found = one.problem
+                else:
+                    found = certify(
                         one.problem,
                         subject=subject,
                         gap=gap,
                         seconds=seconds,
                         seed=seed,
-                        resume=states[one.name].document if one.name in states else None,
+                        resume=states[one.file].document if one.file in states else None,
                         report=stop.reporting(one.words, step),
                         workers=workers,
                         cache=cache,
                     )
-                )
                 kept += not isinstance(found, str) and found.kept
-                unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
+                unsettled |= isinstance(found, str) or found.outcome not in settled
                 files = _written(folder, one, found, clock)
-                ids = (case.id, one.selected.problem_id, one.selected.reading_id, one.asked.joint)
-                results.append(certify_result(*ids, subject, found, *files, _why(found)))
+                results.append(certify_result(one.asked, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
     emit(document, lambda shown: _certified(shown, case), as_json)
@@ -156,18 +150,14 @@ def certify_case(
 
 def read_certificates(folder: Path) -> list[dict[str, Any]]:
     """The certificates in a folder; other files of it are left alone."""
+    option = "--certificates"
     if not folder.is_dir():
-        raise CaseError(
-            str(folder), "--certificates", "is not a folder; give the one with your files"
-        )
+        raise CaseError(str(folder), option, "is not a folder; give the one with your files")
     documents = [_read(path) for path in sorted(folder.glob("*.json"))]
     found = [one for one in documents if one.get("format") == CERTIFICATE_FORMAT]
     if not found:
-        raise CaseError(
-            str(folder),
-            "--certificates",
-            f"holds no {CERTIFICATE_FORMAT}; make one with solve --certify",
-        )
+        why = f"holds no {CERTIFICATE_FORMAT}; make one with solve --certify"
+        raise CaseError(str(folder), option, why)
     return found
 
 
@@ -185,14 +175,11 @@ def _questions(case: Case, one: Selected, subject: Subject) -> Iterator[Question
 def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
     statement = case.statement(one.problem_id, one.reading_id)
-    name = f"{case.id}.{one.problem_id}.{one.reading_id}"
     said = in_words(case, one.problem_id, one.reading_id)
-    ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
-    labels: list[str | None] = [None]
-    if coupling is Coupling.PER_JOINT:
-        labels = list(one.problem.joints)
+    ids = (case.id, one.problem_id, one.reading_id)
+    alone = coupling is Coupling.PER_JOINT
+    labels: Sequence[str | None] = one.problem.joints if alone else [None]
     for j, label in enumerate(labels):
-        own = name if label is None else f"{name}.joint-{label}"
         words = said if label is None else f"joint {label} alone; {said}"
         exact: ExactProblem | str
         try:
@@ -202,26 +189,16 @@ def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Ques
             raise
         except TrajgapError as error:
             exact = str(error)
-        yield Question(own, one, CertifiedQuestion(*ids, label, content), exact, words)
-
-
-def _hash(case: Case) -> str | None:
-    """SHA-256 of a case file; None if it cannot be read any more."""
-    known = case_files(case.file)
-    path = known.file(case.file) if case.file in known.ids() else Path(case.file)
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
-        return None
+        yield Question(one, CertifiedQuestion(*ids, label, case.sha256), exact, words)
 
 
 def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, StateFile]:
-    """State files by the name of the question that each is about."""
+    """State files by the files of the question that each is about."""
     found: dict[str, StateFile] = {}
     for path in resume:
         state = read_state(path)
         fits = [
-            q.name
+            q.file
             for q in asked
             if not isinstance(q.problem, str) and state.fits(q.problem, q.subject)
         ]
@@ -233,20 +210,16 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
     return found
 
 
-WIDENED = (
-    "lower and upper limits differ, and this kind of proof uses the larger size on both sides: "
-    "the lower bound holds, but more time need not close the gap"
-)
-"""Said of intervals that are wide for another reason than time."""
-
-
 def _why(found: Certified | str) -> str | None:
     """Why a proof that was found does not count, or what the time was too short for."""
     if isinstance(found, str):
         return None
     if found.verdict is None or found.verdict.proves:
         if found.widened and found.outcome is Outcome.INTERVAL:
-            return WIDENED
+            return (
+                "lower and upper limits differ, and this kind of proof uses the larger size on "
+                "both sides: the lower bound holds, but more time need not close the gap"
+            )
         if found.left_out is None:
             return None
         return f"{found.left_out}; --time was too short; resume with more time"
@@ -325,24 +298,12 @@ class _Stop:
 
     def __init__(self) -> None:
         self.asked = False
+        self._before = signal.getsignal(signal.SIGINT)
 
-    @contextmanager
-    def listening(self) -> Iterator[None]:
-        """Remember the first Ctrl-C."""
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-        before = signal.getsignal(signal.SIGINT)
-
-        def remember(signum: int, frame: FrameType | None) -> None:
-            self.asked = True
-            signal.signal(signal.SIGINT, before)
-
-        signal.signal(signal.SIGINT, remember)
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGINT, before)
+    def remember(self, _signum: int, _frame: FrameType | None) -> None:
+        """Answer the first Ctrl-C."""
+        self.asked = True
+        signal.signal(signal.SIGINT, self._before)
 
     def reporting(self, name: str, step: Steps) -> Callable[[Progress], None]:
         """What a search calls after every batch: the live line, and the end if asked for."""
@@ -358,14 +319,6 @@ class _Stop:
         return report
 
 
-_PROVED: dict[str, str] = {Outcome.INFEASIBLE: "infeasible: proved", Outcome.OPEN: "nothing proved"}
-"""Outcomes whose word alone might be taken for a guess."""
-_BOUNDED = "no motion proved"
-"""Of an open outcome whose lower bound is proved."""
-_COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outcome")
-"""What the table says of each interval."""
-
-
 def _certified(document: CertifyDocument, case: Case) -> list[Block]:
     """Summary of the `solve --certify` document."""
     results = document.intervals
@@ -376,7 +329,8 @@ def _certified(document: CertifyDocument, case: Case) -> list[Block]:
     for r in results:
         row = ((r.joint or "all",) if apart else ()) + _cells(r)
         rows.setdefault((r.problem, r.reading), []).append(row)
-    columns = (("joint",) if apart else ()) + _COLUMNS
+    names = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outcome")
+    columns = (("joint",) if apart else ()) + names
     parts: list[Block] = [Prose(results[0].case, "heading")]
     parts += by_question(rows, columns, apart, case)
     reasons = dict.fromkeys(r.outcome_why for r in results if r.outcome_why)
@@ -386,17 +340,22 @@ def _certified(document: CertifyDocument, case: Case) -> list[Block]:
 
 def _cells(result: CertifiedResult) -> tuple[object, ...]:
     gap, seconds = result.gap, result.seconds
-    bounded = result.outcome == Outcome.OPEN and Fraction(result.lower_exact or 0) > 0
+    # Words that alone might be taken for a guess.
+    said: dict[str, str] = {
+        Outcome.INFEASIBLE: "infeasible: proved",
+        Outcome.OPEN: "nothing proved",
+    }
+    if Fraction(result.lower_exact or 0) > 0:
+        said[Outcome.OPEN] = "no motion proved"
     return (
         _bound(result.lower_exact, "lower"),
         _bound(result.upper_exact, "upper"),
         "" if isinstance(gap, Why) else f"{gap:.1e}",
         *("" if isinstance(n, Why) else n for n in (result.nodes, result.open_nodes)),
         "" if isinstance(seconds, Why) else f"{seconds:.1f}",
-        _BOUNDED if bounded else _PROVED.get(result.outcome, result.outcome),
+        said.get(result.outcome, result.outcome),
     )
 
 
 def _bound(exact: str | None, side: str) -> str:
-    """Nine decimals, rounded outwards."""
     return "none" if exact is None else shown_bound(Fraction(exact), side, places=9)

@@ -22,45 +22,14 @@ from ..documents import (
     RoundingExhibit,
     Why,
     WorstPeak,
-    json_text,
     known,
     reason,
 )
-from .input import (
-    Selected,
-    duration_box,
-    naming,
-    one_joint,
-    read_case,
-    read_durations,
-    select,
-    waypoint_box,
-)
+from . import options as given
+from .input import Selected, duration_box, naming, read_case, read_durations, select
 from .motion_checking import MotionOptions, check_file
-from .options import (
-    AccelerationLimit,
-    AsJson,
-    Between,
-    Coupled,
-    DecelerationLimit,
-    JerkLimit,
-    JointNames,
-    LimitsFile,
-    MotionSource,
-    MotionUnits,
-    Noise,
-    Out,
-    PositionLimit,
-    ProblemId,
-    ReadingId,
-    TimeNoise,
-    Tolerance,
-    Topic,
-    UrdfFile,
-    VelocityLimit,
-)
-from .output import emit, new_output, progress
-from .result_tables import by_result, place, reasons
+from .motion_results import by_result, place, reasons
+from .output import answer, progress
 
 
 class MissingOption(typer.BadParameter):
@@ -73,7 +42,7 @@ class MissingOption(typer.BadParameter):
 
 def check(
     context: typer.Context,
-    case: MotionSource,
+    case: given.MotionSource,
     durations: Annotated[
         str | None,
         typer.Option(
@@ -82,23 +51,23 @@ def check(
             "states none). Each number counts as rounded to its digits.",
         ),
     ] = None,
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    coupling: Coupled = None,
-    velocity: VelocityLimit = None,
-    acceleration: AccelerationLimit = None,
-    deceleration: DecelerationLimit = None,
-    jerk: JerkLimit = None,
-    position: PositionLimit = None,
-    limits: LimitsFile = None,
-    urdf: UrdfFile = None,
-    interpolation: Between = None,
-    noise: Noise = None,
-    time_noise: TimeNoise = None,
-    units: MotionUnits = None,
-    joints: JointNames = None,
-    topic: Topic = None,
-    tolerance: Tolerance = 1e-6,
+    problem: given.ProblemId = None,
+    reading: given.ReadingId = None,
+    coupling: given.Coupled = None,
+    velocity: given.VelocityLimit = None,
+    acceleration: given.AccelerationLimit = None,
+    deceleration: given.DecelerationLimit = None,
+    jerk: given.JerkLimit = None,
+    position: given.PositionLimit = None,
+    limits: given.LimitsFile = None,
+    urdf: given.UrdfFile = None,
+    interpolation: given.Between = None,
+    noise: given.Noise = None,
+    time_noise: given.TimeNoise = None,
+    units: given.MotionUnits = None,
+    joints: given.JointNames = None,
+    topic: given.Topic = None,
+    tolerance: given.Tolerance = 1e-6,
     strict: Annotated[
         bool,
         typer.Option(
@@ -123,8 +92,8 @@ def check(
             "violations are red.",
         ),
     ] = None,
-    as_json: AsJson = False,
-    out: Out = None,
+    as_json: given.AsJson = False,
+    out: given.Out = None,
 ) -> int:
     """Judge a motion, or a case's durations, against limits.
 
@@ -134,27 +103,7 @@ def check(
     Durations of a case are judged for all t, as printed and however the digits were rounded.
     Under per-joint coupling each joint is judged separately as well.
     """
-    options = MotionOptions(
-        {
-            "velocity": velocity,
-            "acceleration": acceleration,
-            "deceleration": deceleration,
-            "jerk": jerk,
-            "position": position,
-        },
-        limits,
-        urdf,
-        interpolation,
-        noise,
-        time_noise,
-        units,
-        joints,
-        topic,
-        tolerance,
-        strict,
-        repair,
-        plot,
-    )
+    options = MotionOptions.of(locals())
     if math.isnan(tolerance):
         raise typer.BadParameter("--tolerance is not a number; give one from 0 to 1")
     if durations is not None:
@@ -185,26 +134,29 @@ def _check_durations(
     selected = select(case, problem, reading, coupling)
     printed = read_durations(text, case.file)
     boxes = [duration_box(case, one, printed) for one in selected]
-    with new_output(out) as write:
+
+    def made() -> CheckDocument:
         results = []
         with progress("check", len(selected)) as step, naming(case.file):
             for one, box in zip(selected, boxes, strict=True):
                 step(in_words(case, one.problem_id, one.reading_id))
                 results.append(_checked(case, one, box))
-        document = CheckDocument(results=tuple(results))
-        write(json_text(document))
-    emit(document, lambda shown: _tables(shown, case), as_json)
+        return CheckDocument(results=tuple(results))
+
+    answer(made, lambda shown: _tables(shown, case), as_json, out)
     return 0
 
 
 def _checked(case: Case, one: Selected, box: RoundingBox) -> CheckResult:
-    problem, points = one.problem, waypoint_box(case, one)
+    problem, sides = one.problem, case.waypoint_box(one.problem_id, one.reading_id)
+    points = RoundingBox(problem.waypoints, *sides)
     joints: list[tuple[str, Check, RoundingVerdict]] = []
     loose = case.statement(one.problem_id, one.reading_id).loose_ends
     if problem.coupling is Coupling.PER_JOINT:
         for j, label in enumerate(problem.joints):
-            alone = problem.joint(j)
-            rounding = judge_rounding(alone, box, one_joint(points, j), loose_ends=loose)
+            alone, own = problem.joint(j), [j]
+            column = RoundingBox(points.value[:, own], points.lower[:, own], points.upper[:, own])
+            rounding = judge_rounding(alone, box, column, loose_ends=loose)
             joints.append((label, judge(alone, box.value), rounding))
     return check_result(
         case.id,
@@ -247,6 +199,14 @@ def check_result(
 
 
 def _judged(found: Check, rounding: RoundingVerdict) -> Judged:
+    exhibit: PassingPoint | BrokenPlace | None = None
+    shown = rounding.exhibit
+    if isinstance(shown, Point):
+        exhibit = PassingPoint(
+            segment_durations=shown.durations.tolist(), waypoints=shown.waypoints.tolist()
+        )
+    elif shown is not None:
+        exhibit = BrokenPlace.of(shown)
     worst = found.worst
     time = known(worst and worst.time, "a bound on the whole duration")
     return Judged.of(
@@ -256,25 +216,10 @@ def _judged(found: Check, rounding: RoundingVerdict) -> Judged:
         feasible_time=known(found.feasible_time, found.feasible_why),
         tight_time=known(found.tight_time, found.tight_why),
         rounding=RoundingExhibit(
-            exhibit=_exhibit(rounding),
+            exhibit=exhibit,
             worst_ratio_at_least=known(rounding.lower_bound_of_worst, "no bound was needed"),
         ),
     )
-
-
-def _exhibit(rounding: RoundingVerdict) -> PassingPoint | BrokenPlace | None:
-    shown = rounding.exhibit
-    if isinstance(shown, Point):
-        return PassingPoint(
-            segment_durations=shown.durations.tolist(), waypoints=shown.waypoints.tolist()
-        )
-    if shown is None:
-        return None
-    return BrokenPlace.of(shown)
-
-
-_COLUMNS = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">worst", "…where")
-"""What the table says of each result, or of each of its joints."""
 
 
 def _tables(document: CheckDocument, case: Case) -> list[Block]:
@@ -284,19 +229,18 @@ def _tables(document: CheckDocument, case: Case) -> list[Block]:
         "verdict: for the printed numbers themselves, at all t. rounding: however the digits were "
         "rounded."
     )
+
+    def missing(result: CheckResult) -> dict[str, str | None]:
+        times = {"feasible time": result.feasible_time, "tight time": result.tight_time}
+        return {name: reason(time) for name, time in times.items()}
+
+    columns = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">worst", "…where")
     return [
         Prose(f"{results[0].case}: durations {shown} s", "heading"),
-        *by_result(results, _COLUMNS, _cells, "all", case),
+        *by_result(results, columns, _cells, "all", case),
         Prose(note, "note"),
-        *reasons(results, _missing, case),
+        *reasons(results, missing, case),
     ]
-
-
-def _missing(result: CheckResult) -> dict[str, str | None]:
-    return {
-        "feasible time": reason(result.feasible_time),
-        "tight time": reason(result.tight_time),
-    }
 
 
 def _cells(result: Judged) -> tuple[object, ...]:

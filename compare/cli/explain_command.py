@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from difflib import get_close_matches
 from typing import Annotated
 
@@ -12,9 +12,9 @@ from ...problem import CaseError
 from .. import pages
 from ..audits import EXPLAINED, RULES
 from ..blocks import Block, Prose, table
-from ..documents import ExplainDocument, ExplainedRule, ExplainedWord, json_text
+from ..documents import ExplainDocument, ExplainedRule, ExplainedWord
 from .options import AsJson, Out
-from .output import emit, new_output
+from .output import answer
 
 
 def explain(
@@ -33,16 +33,21 @@ def explain(
     A rule is explained with what it may conclude and an example. Without an argument, everything
     that can be explained is listed.
     """
-    with new_output(out) as write:
-        document = _document(asked or [])
-        write(json_text(document))
-    emit(document, _in_full if asked else _listed, as_json)
+    summary = _in_full if asked else _listed
+    answer(lambda: _document(asked or []), summary, as_json, out)
     return 0
 
 
 def _document(asked: Sequence[str]) -> ExplainDocument:
     """Document of `explain`: what is asked for, or everything."""
-    rules, words = tuple(_rules()), tuple(_words())
+    rules = tuple(
+        ExplainedRule.of(EXPLAINED[rule.id], id=rule.id, title=rule.title) for rule in RULES
+    )
+    words = tuple(
+        ExplainedWord(word=word, about=about, meaning=meaning)
+        for about, group in pages.word_groups()
+        for word, meaning in group.items()
+    )
     if not asked:
         return ExplainDocument(rules=rules, words=words)
     wanted = [" ".join(one.split()).casefold() for one in asked]
@@ -57,17 +62,6 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
         rules=tuple(one for one in rules if one.id.casefold() in wanted),
         words=tuple(one for one in words if one.word.casefold() in wanted),
     )
-
-
-def _rules() -> Iterator[ExplainedRule]:
-    for rule in RULES:
-        yield ExplainedRule.of(EXPLAINED[rule.id], id=rule.id, title=rule.title)
-
-
-def _words() -> Iterator[ExplainedWord]:
-    for about, group in pages.word_groups():
-        for word, meaning in group.items():
-            yield ExplainedWord(word=word, about=about, meaning=meaning)
 
 
 def _in_full(document: ExplainDocument) -> list[Block]:

@@ -9,17 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import (
-    Array,
-    Case,
-    CaseError,
-    Printed,
-    Problem,
-    TrajgapError,
-    load_case,
-    read_float,
-    to_si,
-)
+from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, read_float, to_si
 from ..audits import RoundingBox
 
 
@@ -32,16 +22,14 @@ class Selected:
     problem: Problem
 
 
-_LARGE = re.compile(
-    r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
-)
-"""A number that may be too large for float64, alone or among others in an argument."""
-
-
 def check_numbers(arguments: Sequence[str]) -> None:
     """Refuse numbers that parsers of options would take for infinite, without a word of it."""
+    # A number that may be too large for float64, alone or among others in an argument.
+    large = re.compile(
+        r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
+    )
     for before, argument in zip(("", *arguments), arguments, strict=False):
-        for word in _LARGE.findall(argument):
+        for word in large.findall(argument):
             option = before if before.startswith("--") else argument.partition("=")[0]
             try:
                 read_float(word)
@@ -77,11 +65,9 @@ def read_cases(sources: Sequence[str]) -> list[Case]:
     for source in sources:
         case = read_case(source)
         if case.id in cases:
-            raise CaseError(
-                source,
-                "id",
-                f"{case.id!r} is also the id of {cases[case.id].file}; give each case once",
-            )
+            other = cases[case.id].file
+            why = f"{case.id!r} is also the id of {other}; give each case once"
+            raise CaseError(source, "id", why)
         cases[case.id] = case
     return list(cases.values())
 
@@ -138,18 +124,3 @@ def duration_box(case: Case, selected: Selected, printed: Sequence[Printed]) -> 
         np.array([m.lower for m in measured]),
         np.array([m.upper for m in measured]),
     )
-
-
-def waypoint_box(case: Case, selected: Selected) -> RoundingBox:
-    """The problem's way-points, in rad: the numbers, and the bounds of what rounds to them."""
-    lower, upper = case.waypoint_box(selected.problem_id, selected.reading_id)
-    return RoundingBox(selected.problem.waypoints, lower, upper)
-
-
-def one_joint(box: RoundingBox, joint: int) -> RoundingBox:
-    """The column of one joint."""
-
-    def column(array: Array) -> Array:
-        return array[:, joint : joint + 1]
-
-    return RoundingBox(column(box.value), column(box.lower), column(box.upper))

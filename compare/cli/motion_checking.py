@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, fields, replace
+from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -33,10 +35,14 @@ from .output import emit, new_output
 
 @dataclass(frozen=True)
 class MotionOptions:
-    """What the command line says of a motion and its limits."""
+    """What the command line says of a motion and its limits, by the names of the options."""
 
-    limits: Mapping[str, str | None] = field(default_factory=dict)
-    limits_file: Path | None = None
+    velocity: str | None = None
+    acceleration: str | None = None
+    deceleration: str | None = None
+    jerk: str | None = None
+    position: str | None = None
+    limits: Path | None = None
     urdf: Path | None = None
     interpolation: str | None = None
     noise: str | None = None
@@ -44,34 +50,36 @@ class MotionOptions:
     units: str | None = None
     joints: str | None = None
     topic: str | None = None
-    tolerance: float = 1e-6
     strict: bool = False
     repair: Path | None = None
     plot: Path | None = None
+    tolerance: float = 1e-6
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> MotionOptions:
+        """The options among the arguments of a command."""
+        own = {one.name: given[one.name] for one in fields(cls) if one.name in given}
+        return cls(**own)
+
+    @property
+    def flags(self) -> dict[str, str | None]:
+        """Limits that the command line itself states."""
+        quantities = ("velocity", "acceleration", "deceleration", "jerk", "position")
+        return {name: getattr(self, name) for name in quantities}
 
     @property
     def names(self) -> list[str]:
         """Options that are there, for the message where they do not belong."""
-        named = {
-            **self.limits,
-            "limits": self.limits_file,
-            "urdf": self.urdf,
-            "interpolation": self.interpolation,
-            "noise": self.noise,
-            "time-noise": self.time_noise,
-            "units": self.units,
-            "joints": self.joints,
-            "topic": self.topic,
-            "strict": self.strict or None,
-            "repair": self.repair,
-            "plot": self.plot,
-        }
-        return [f"--{name}" for name, value in named.items() if value is not None]
+        asked = [one.name for one in fields(self) if one.name != "tolerance"]
+        there = [name for name in asked if getattr(self, name) not in (None, False)]
+        return [f"--{name.replace('_', '-')}" for name in there]
 
 
 def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | None) -> int:
     """Judge the motion of a file; 1 with ``strict`` unless it passes and all of it is judged."""
-    how = _interpolation(options.interpolation)
+    how = None
+    if options.interpolation is not None:
+        how = word_of("--interpolation", options.interpolation, Interpolation)
     read = _read(Path(source), options)
     limits, units = stated_limits(read.joints, read.units, options)
     read = replace(read, units=units)
@@ -92,14 +100,8 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
             return judged(again, limits, how, options.tolerance)[1]
 
         slower = repair and repaired(read, found, repair, check, write_motion)
-        document = motion_document(
-            source,
-            read,
-            how,
-            found,
-            slower or Why(found.feasible_why or "--repair needs it"),
-            plot,
-        )
+        why = Why(found.feasible_why or "--repair needs it")
+        document = motion_document(source, read, how, found, slower or why, plot)
         if kind is not None:
             write_picture(_picture(source, read, limits, how, found, kind))
         write(json_text(document))
@@ -138,19 +140,14 @@ def judged(
     rounding = content.rounding
     if found.verdict is Verdict.UNDECIDED and rounding.time and how is not Interpolation.CONTROLLER:
         exact = replace(content, rounding=replace(rounding, time=0.0))
-        told = _of_exact_times(check_motion(interpolated(exact, how), limits, tolerance).verdict)
-        found = replace(found, open=(*told, *found.open))
+        verdict = check_motion(interpolated(exact, how), limits, tolerance).verdict
+        if verdict is not Verdict.UNDECIDED:
+            told = (
+                "If the times are exact, like those of a planner's grid, the verdict is "
+                f"{verdict}: add --time-noise 0."
+            )
+            found = replace(found, open=(told, *found.open))
     return how, found
-
-
-def _of_exact_times(verdict: Verdict) -> tuple[str, ...]:
-    """The verdict on the same samples with times that nothing was rounded off, if there is one."""
-    if verdict is Verdict.UNDECIDED:
-        return ()
-    return (
-        f"If the times are exact, like those of a planner's grid, the verdict is {verdict}: add "
-        "--time-noise 0.",
-    )
 
 
 def motion_document(
@@ -208,10 +205,8 @@ def _picture(
     if isinstance(content, Samples) and how is not None and how is not Interpolation.NONE:
         content = interpolated(content, how)
     between = "" if how is None else f", interpolation {how}"
-    title = f"{source}{between}"
-    return picture_bytes(
-        checked_picture(content, limits, found, title=title, units=read.units), kind
-    )
+    title, units = f"{source}{between}", read.units
+    return picture_bytes(checked_picture(content, limits, found, title=title, units=units), kind)
 
 
 def stated_limits(
@@ -224,10 +219,10 @@ def stated_limits(
     factors = factors_of(units, len(joints), "--units")
     suited = tuple(units) * (len(joints) if len(units) == 1 else 1)
     sources: list[StatedLimits] = []
-    if any(value is not None for value in options.limits.values()):
-        sources.append(limits_of_flags(options.limits, joints, factors))
-    if options.limits_file:
-        sources.append(read_limits(options.limits_file))
+    if any(value is not None for value in options.flags.values()):
+        sources.append(limits_of_flags(options.flags, joints, factors))
+    if options.limits:
+        sources.append(read_limits(options.limits))
     if options.urdf:
         sources.append(read_urdf(options.urdf))
         suited = sources[-1].units_of(joints, suited)
@@ -242,14 +237,14 @@ def stated_limits(
     return limits, suited
 
 
-def _interpolation(text: str | None) -> Interpolation | None:
-    if text is None:
-        return None
-    try:
-        return Interpolation(text)
-    except ValueError:
-        known_words = ", ".join(Interpolation)
-        raise CaseError("--interpolation", "", f"{text!r} is unknown; use {known_words}") from None
+E = TypeVar("E", bound=StrEnum)
+
+
+def word_of(option: str, text: str, words: type[E]) -> E:
+    """The word that an option gives, out of those that there are."""
+    if text not in tuple(words):
+        raise CaseError(option, "", f"{text!r} is unknown; use {', '.join(words)}")
+    return words(text)
 
 
 def words(text: str | None) -> tuple[str, ...]:
@@ -275,8 +270,6 @@ _ENDINGS = {
     MotionForm.PPOLY: (".json",),
 }
 """How a file is called, so it is read as what it is."""
-_ROUNDS = 3
-"""Times that a file is written: whole nanoseconds may take a motion past a limit once more."""
 
 
 def repaired(
@@ -301,7 +294,7 @@ def repaired(
     factor, after = 1.0, found
     with TemporaryDirectory() as folder:
         draft = Path(folder) / out.name
-        for _ in range(_ROUNDS):
+        for _ in range(3):  # whole nanoseconds may take a motion past a limit once more
             factor *= after.stretch
             text = read.slowed(factor).written()
             draft.write_text(text, encoding="utf-8")

@@ -1,22 +1,28 @@
-"""A verdict on a motion as an entry of documents, and as the terminal shows it."""
+"""What `check` and `solve` answer, as tables and lines of a terminal."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeAlias, TypeVar
 
-from ...problem import Verdict, from_si, shown_bound
+from ...problem import Case, Verdict, from_si, shown_bound
 from ...problem.motions import Interpolation, MotionCheck, MotionPeak, unstated_words
+from ..audits import asked_as, in_words
 from ..blocks import Block, Prose, table
 from ..documents import (
+    ActiveLimit,
     CheckedMotion,
+    CheckResult,
     MotionCheckDocument,
     MotionFloor,
     MotionJumpShown,
     MotionPeakShown,
     MotionQuantity,
     NotJudged,
+    SolveResult,
     Why,
+    WorstPeak,
     known,
     value_or_none,
 )
@@ -71,7 +77,10 @@ def shown_check(document: MotionCheckDocument) -> list[Block]:
     )
     parts: list[Block] = [Prose(head, "heading"), *_verdict(document, units)]
     if result.not_judged:
-        parts.append(Prose(_STATE_IT, "note"))
+        advice = (
+            "To judge the rest, state its limit, or inf if it has none. --strict fails otherwise."
+        )
+        parts.append(Prose(advice, "note"))
     written = value_or_none(document.repaired)
     if written is not None:
         slower = f"{written.slow_down:.6f} times slower" if written.slow_down > 1 else "as it is"
@@ -116,15 +125,15 @@ def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
 
 def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Block]:
     result = document.result
-    parts: list[Block] = [
-        Prose(f"{result.verdict}: {_sentence(result, tuple(units))}", "heading"),
-    ]
+    parts: list[Block] = [Prose(f"{result.verdict}: {_sentence(result, tuple(units))}", "heading")]
     worst = value_or_none(result.worst)
     if worst is not None:
         value, limit = (_sized(size, worst, units) for size in (worst.value, worst.limit))
         said = f"worst: joint {worst.joint}, {worst.quantity} {value} against {limit}"
         parts.append(Prose(f"{said} at {_instant(worst.time)} s (limit from {worst.source})"))
-    for one in _gravest(result):
+    order = list(MotionQuantity)
+    # The largest jump of the lowest derivative that jumps.
+    for one in sorted(result.jumps, key=lambda j: (order.index(j.quantity), -abs(j.size)))[:1]:
         said = f"jump: {one.quantity} of joint {one.joint} by {_sized(one.size, one, units)}"
         breaks = f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
         parts.append(Prose(f"{said} at {_instant(one.time)} s; {breaks}"))
@@ -153,31 +162,16 @@ def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Bl
     return parts
 
 
-def _gravest(result: CheckedMotion) -> Sequence[MotionJumpShown]:
-    """The largest jump of the lowest derivative that jumps."""
-    if not result.jumps:
-        return ()
-    order = list(MotionQuantity)
-    return [min(result.jumps, key=lambda one: (order.index(one.quantity), -abs(one.size)))]
-
-
-_SENTENCES = {
-    Verdict.PASS: "every {limit} is kept at every instant",
-    Verdict.VIOLATED: "a limit is exceeded",
-    Verdict.DISCONTINUOUS: "the motion jumps",
-    Verdict.UNDECIDED: "it is not shown whether every {limit} is kept",
-}
-"""What a verdict means, in a few words."""
-
-
-_STATE_IT = "To judge the rest, state its limit, or inf if it has none. --strict fails otherwise."
-"""How the verdict comes to speak of everything."""
-
-
 def _sentence(result: CheckedMotion, joints: Sequence[str]) -> str:
     silent = unstated_words([(one.joint, one.quantity) for one in result.not_judged], joints)
     limit = "stated limit" if silent else "limit"
-    sentence = _SENTENCES[result.verdict].format(limit=limit)
+    sentences = {
+        Verdict.PASS: "every {limit} is kept at every instant",
+        Verdict.VIOLATED: "a limit is exceeded",
+        Verdict.DISCONTINUOUS: "the motion jumps",
+        Verdict.UNDECIDED: "it is not shown whether every {limit} is kept",
+    }
+    sentence = sentences[result.verdict].format(limit=limit)
     if result.verdict is Verdict.DISCONTINUOUS:
         kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
         sentence += f"; limits, jumps apart: {kept}"
@@ -194,3 +188,70 @@ def _sized(value: float, one: MotionPeakShown | MotionJumpShown, units: Mapping[
 
 def _number(value: float, unit: str) -> str:
     return f"{from_si(value, unit):.6g}"
+
+
+Result: TypeAlias = CheckResult | SolveResult
+"""One problem under one reading, and under per-joint coupling its joints."""
+R = TypeVar("R", CheckResult, SolveResult)
+Cells = Callable[[Any], tuple[object, ...]]
+"""What a row says of a result, or of one of its joints."""
+Rows = Sequence[Sequence[object]]
+"""Rows of a table."""
+
+
+def by_result(
+    results: Sequence[Result], columns: Sequence[str], cells: Cells, whole: str, case: Case
+) -> list[Block]:
+    """One table of all results, or one for each where the joints stand by themselves."""
+    rows: dict[tuple[str, str], Rows] = {}
+    apart = any(result.joints for result in results)
+    for result in results:
+        joints = [(one.joint, *cells(one)) for one in result.joints or ()]
+        own = [*joints, (whole, *cells(result))] if apart else [cells(result)]
+        rows[result.problem, result.reading] = own
+    return by_question(rows, ("joint", *columns) if apart else columns, apart, case)
+
+
+def by_question(
+    rows: Mapping[tuple[str, str], Rows], columns: Sequence[str], apart: bool, case: Case
+) -> list[Block]:
+    """What is said of each problem and reading, which are called by words; an id stands once.
+
+    One table of them all, or one for each where they are set apart or there is only one.
+    """
+    if not apart and len(rows) > 1:
+        joined = [(in_words(case, *ids), *row) for ids, own in rows.items() for row in own]
+        # What a command has to be given so that it takes one problem or one reading alone.
+        problems, readings = (dict.fromkeys(ids) for ids in zip(*rows, strict=True))
+        titles = {p.id: p.title or p.id for p in case.problems}
+        asked = [(f"--problem {one}", titles[one]) for one in problems if len(titles) > 1]
+        several = len(case.readings) > 1
+        asked += [(f"--reading {one}", case.labels[one]) for one in readings if several]
+        return [table(("~problem", *columns), joined), table(("for one alone", "~which"), asked)]
+    parts: list[Block] = []
+    for ids, own in rows.items():
+        words = asked_as(case, *ids)
+        # The tables stand below the case's id.
+        parts += [Prose(words)] if words != case.id else []
+        parts.append(table(columns, own))
+    return parts
+
+
+def reasons(
+    results: Iterable[R], missing: Callable[[R], Mapping[str, str | None]], case: Case
+) -> list[Prose]:
+    """Why a number is missing, for each result without joints of its own."""
+    return [
+        Prose(f"{name}: {why} ({in_words(case, result.problem, result.reading)})", "note")
+        for result in results
+        if not result.joints
+        for name, why in missing(result).items()
+        if why
+    ]
+
+
+def place(at: ActiveLimit | WorstPeak) -> str:
+    """Where on a trajectory, and of what."""
+    where = f"segment {at.segment + 1}" if at.joint is None else f"joint {at.joint}"
+    when = "" if isinstance(at.time, Why) else f" at {at.time:.4f} s"
+    return f"{where} {at.quantity}{when}"

@@ -5,20 +5,29 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ...problem import CHOICES, CaseError, scaffold
 from ...problem.cases import identity_of
 from .motion_checking import MotionOptions
-from .options import FAMILY, LIMIT, USUAL
+from .options import Degree, Family
 from .output import new_output, say, warn
 from .solve_files import limits_of_table
 
-_UNITS = "One for all joints, or one per joint, separated by commas: deg,deg,mm."
-"""Said of each option that takes a unit of joints."""
+_Limit = Annotated[
+    str | None,
+    typer.Option(help="One limit for all joints, or one per joint, separated by commas."),
+]
+
+
+def _unit(metavar: str) -> Any:
+    """The option that takes a unit of joints."""
+    said = "One for all joints, or one per joint, separated by commas: deg,deg,mm."
+    return typer.Option(metavar=metavar, help=said)
 
 
 def new(
@@ -29,9 +38,7 @@ def new(
             "--from", metavar="TABLE.csv", help="One way-point a row, one joint a column."
         ),
     ],
-    position_unit: Annotated[
-        str | None, typer.Option(metavar="rad|deg|m|cm|mm", help=_UNITS)
-    ] = None,
+    position_unit: Annotated[str | None, _unit("rad|deg|m|cm|mm")] = None,
     urdf: Annotated[
         Path | None,
         typer.Option(
@@ -41,24 +48,18 @@ def new(
             "names or numbers.",
         ),
     ] = None,
-    velocity: Annotated[str | None, typer.Option(help=LIMIT)] = None,
-    velocity_unit: Annotated[
-        str | None, typer.Option(metavar="rad/s|deg/s|rpm|mm/s|...", help=_UNITS)
-    ] = None,
-    acceleration: Annotated[str | None, typer.Option(help=LIMIT)] = None,
-    acceleration_unit: Annotated[
-        str | None, typer.Option(metavar="rad/s^2|deg/s^2|mm/s^2|...", help=_UNITS)
-    ] = None,
-    jerk: Annotated[str | None, typer.Option(help=LIMIT)] = None,
-    jerk_unit: Annotated[
-        str | None, typer.Option(metavar="rad/s^3|deg/s^3|mm/s^3|...", help=_UNITS)
-    ] = None,
+    velocity: _Limit = None,
+    velocity_unit: Annotated[str | None, _unit("rad/s|deg/s|rpm|mm/s|...")] = None,
+    acceleration: _Limit = None,
+    acceleration_unit: Annotated[str | None, _unit("rad/s^2|deg/s^2|mm/s^2|...")] = None,
+    jerk: _Limit = None,
+    jerk_unit: Annotated[str | None, _unit("rad/s^3|deg/s^3|mm/s^3|...")] = None,
     time_unit: Annotated[str | None, typer.Option(metavar="s|ms|min")] = None,
     case_id: Annotated[
         str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
     ] = None,
-    family: Annotated[str | None, typer.Option(help=FAMILY, show_default=USUAL)] = None,
-    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None,
+    family: Family = None,
+    degree: Degree = None,
     durations: Annotated[
         str | None,
         typer.Option(
@@ -155,7 +156,10 @@ def _ask(quantity: str, table: str) -> str:
         if interactive:
             sys.stderr.write(f"unit of {quantity} in {table} ({shown}): ")
             sys.stderr.flush()
-        line = _line()
+        line = ""  # as where standard input has ended
+        if sys.stdin is not None:
+            with suppress(OSError):
+                line = sys.stdin.readline()
         answer = line.strip() or default or ""
         if _known(answer, quantity) or not line or not interactive:
             return answer
@@ -170,11 +174,3 @@ def _known(answer: str, quantity: str) -> bool:
 
 def _interactive() -> bool:
     return sys.stdin is not None and sys.stdin.isatty()
-
-
-def _line() -> str:
-    """The next line of standard input; empty if it has ended, or cannot be read at all."""
-    try:
-        return "" if sys.stdin is None else sys.stdin.readline()
-    except OSError:
-        return ""

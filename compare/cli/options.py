@@ -7,16 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-LIMIT = "One limit for all joints, or one per joint, separated by commas."
-"""Help of the three options of `new` that take limits."""
-FAMILY = (
-    "Curve, by its name in case files or in the literature, or by the degrees of its segments: "
-    "3-5-3, "
-    "4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials..."
-)
-"""Help of the option that names the curve through a table of way-points."""
-USUAL = "3-5-3 for four way-points, else a cubic spline"
-"""What it is where it is not named."""
 ENDS = """\b
 Exit codes:
   0    done
@@ -34,8 +24,15 @@ INTERRUPTED = 130
 """Exit code: what a shell says of SIGINT."""
 MOST = 10_000
 """Largest number of starts, seeds and workers: what they make is kept in memory."""
-ONE_BY_ONE = 6
-"""Problems up to which `bench` and `study` print a table for each; of more there is one."""
+
+
+def command_group(**settings: Any) -> typer.Typer:
+    """A group of commands, whose help this program prints as that of all others."""
+    help_names = {"help_option_names": ["-h", "--help"]}
+    return typer.Typer(
+        add_completion=False, rich_markup_mode=None, context_settings=help_names, **settings
+    )
+
 
 # Arguments and options that several commands share.
 Source = Annotated[
@@ -177,8 +174,7 @@ MotionUnits = Annotated[
     ),
 ]
 JointNames = Annotated[
-    str | None,
-    typer.Option(metavar="A,B,...", help="Names of the columns of a table, in order."),
+    str | None, typer.Option(metavar="A,B,...", help="Names of the columns of a table, in order.")
 ]
 Topic = Annotated[str | None, typer.Option(metavar="/NAME", help="Of a rosbag.")]
 Tolerance = Annotated[
@@ -214,3 +210,12 @@ Form = Annotated[
         show_default="csv",
     ),
 ]
+Family = Annotated[
+    str | None,
+    typer.Option(
+        help="Curve, by its name in case files or in the literature, or by the degrees of its "
+        "segments: 3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials...",
+        show_default="3-5-3 for four way-points, else a cubic spline",
+    ),
+]
+Degree = Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")]

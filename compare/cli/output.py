@@ -5,10 +5,14 @@ from __future__ import annotations
 import io
 import os
 import re
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
+from types import FrameType
 from typing import TypeVar
 
 from rich import box
@@ -21,14 +25,13 @@ from rich.text import Text
 from ...problem import CaseError, new_file, replace_file, try_writing_in, visible
 from ..blocks import Block, CardShown, Grid, Prose, Terms, table
 from ..documents import Document, json_text
+from ..pages import unwritable
 
 D = TypeVar("D", bound=Document)
 
 NEVER_RAN = 1
 """Exit code where every run of an optimiser failed: as of other answers that a script must not take
 for a success. What the other optimisers came to is printed and written."""
-_PIPE_WIDTH = 120
-"""Columns where nobody's window limits them."""
 
 
 def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) -> None:
@@ -40,6 +43,17 @@ def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) ->
     else:
         text = rendered(summary(document))
     say(text)
+
+
+def answer(
+    made: Callable[[], D], summary: Callable[[D], Iterable[Block]], as_json: bool, out: Path | None
+) -> D:
+    """Make a document, write it to a new file if there is to be one, and print it."""
+    with new_output(out) as write:
+        document = made()
+        write(json_text(document))
+    emit(document, summary, as_json)
+    return document
 
 
 def warn(doubts: Iterable[str]) -> None:
@@ -56,10 +70,8 @@ def say(text: str) -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(
-            "standard output", "", f"cannot be written ({reason}); redirect it elsewhere"
-        ) from None
+        why = unwritable(error, "redirect it elsewhere")
+        raise CaseError("standard output", "", why) from None
 
 
 def rendered(blocks: Iterable[Block]) -> str:
@@ -73,7 +85,8 @@ def rendered(blocks: Iterable[Block]) -> str:
         file=page,
         color_system="auto" if terminal and not os.environ.get("NO_COLOR") else None,
         force_terminal=terminal,
-        width=None if terminal or "COLUMNS" in os.environ else _PIPE_WIDTH,
+        # Nobody's window limits a pipe.
+        width=None if terminal or "COLUMNS" in os.environ else 120,
         highlight=False,
         markup=False,
         emoji=False,
@@ -97,7 +110,14 @@ def _parts(block: Block) -> Iterator[Text | Columns]:
         # A command that is broken in two cannot be copied.
         command = block.weight == "source"
         said = " ".join(filter(None, (block.word, block.text, block.doi)))
-        yield Text(plain(said), style=_WEIGHTS.get(block.weight, ""), no_wrap=command)
+        weights = {
+            "heading": "bold",
+            "note": "dim",
+            "tally": "dim",
+            "against": "bold red",
+            "warning": "yellow",
+        }
+        yield Text(plain(said), style=weights.get(block.weight, ""), no_wrap=command)
     elif isinstance(block, Grid):
         yield from _parts(Prose(block.caption)) if block.caption else ()
         yield Columns(block)
@@ -112,16 +132,24 @@ def _unbroken(part: object) -> bool:
 
 
 class Steps:
-    """A bar on standard error that each call moves one step on; shows nothing by itself."""
+    """A bar on standard error that each call moves one step on; without a bar nothing is shown."""
+
+    def __init__(self, show: Callable[..., None] = lambda **_: None) -> None:
+        self._show = show
+        self._begun = 0
 
     def __call__(self, text: str) -> None:
         """Begin the next step."""
+        self._show(description=text, completed=self._begun)
+        self._begun += 1
 
     def tell(self, text: str) -> None:
         """Say how the present step goes."""
+        self._show(description=text)
 
     def done(self, text: str) -> None:
         """Count a step that is finished, where they do not come one after another."""
+        self._show(description=text, advance=1)
 
 
 @contextmanager
@@ -156,22 +184,7 @@ def progress(label: str, total: int | None = None, rate: bool = False) -> Iterat
         columns += [MofNCompleteColumn(), Rate(), TextColumn("left:"), TimeRemainingColumn()]
     columns.append(TextColumn("{task.description}"))
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(label, total=total)
-
-        class Shown(Steps):
-            begun = 0
-
-            def __call__(self, text: str) -> None:
-                bar.update(task, description=text, completed=self.begun)
-                self.begun += 1
-
-            def tell(self, text: str) -> None:
-                bar.update(task, description=text)
-
-            def done(self, text: str) -> None:
-                bar.update(task, description=text, advance=1)
-
-        yield Shown()
+        yield Steps(partial(bar.update, bar.add_task(label, total=total)))
 
 
 @contextmanager
@@ -186,13 +199,13 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
         return
     name = str(path)
     with ExitStack() as stack:
-        with _writing(name, field), _taken(name, field):
+        with _writing(name, field):
             if path.is_dir():
                 raise CaseError(name, field, "is a directory; give a file in it")
             put = stack.enter_context(new_file(path))
 
         def write(content: str | bytes) -> None:
-            with _writing(name, field), _taken(name, field):
+            with _writing(name, field):
                 put(content)
 
         yield write
@@ -207,66 +220,31 @@ def replace_output(path: Path, text: str) -> None:
 def check_certificates(folder: Path) -> None:
     """Find out before computing whether certificates can be written into a folder."""
     with _writing(str(folder), "--certificates"):
-        try:
-            try_writing_in(folder)
-        except NotADirectoryError as error:
-            raise CaseError(
-                str(error.filename), "--certificates", "is not a folder; give another"
-            ) from None
-
-
-@contextmanager
-def _taken(name: str, field: str) -> Iterator[None]:
-    try:
-        yield
-    except FileExistsError:
-        raise CaseError(
-            name, field, "already exists; give another file or delete this one"
-        ) from None
+        try_writing_in(folder)
 
 
 @contextmanager
 def _writing(name: str, field: str) -> Iterator[None]:
     try:
         yield
+    except FileExistsError:
+        why = "already exists; give another file or delete this one"
+        raise CaseError(name, field, why) from None
+    except NotADirectoryError as error:
+        if field != "--certificates":
+            raise CaseError(name, field, unwritable(error)) from None
+        raise CaseError(str(error.filename), field, "is not a folder; give another") from None
     except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(
-            name, field, f"cannot be written ({reason}); give a writable place"
-        ) from None
+        raise CaseError(name, field, unwritable(error)) from None
 
 
 _NARROWEST = 16
 """Columns that prose keeps in the narrowest window."""
-_BETWEEN = 2
-"""Columns between two columns of a table."""
-_WEIGHTS = {
-    "heading": "bold",
-    "note": "dim",
-    "tally": "dim",
-    "against": "bold red",
-    "warning": "yellow",
-}
-"""Style of a paragraph, by its weight."""
 _STYLES = {
-    "pass": "green",
-    "keeps": "green",
-    "consistent": "green",
-    "optimal": "green",
-    "converged": "green",
-    "supported": "green",
-    "violated": "yellow",
-    "discontinuous": "yellow",
-    "feasible": "yellow",
-    "not_attained": "yellow",
-    "inconsistent": "yellow",
-    "depends on the reading": "yellow",
-    "warning": "yellow",
-    "breaks": "red",
-    "infeasible": "red",
-    "failed": "red",
-    "refuted": "red",
-    "error": "red",
+    **dict.fromkeys(("pass", "keeps", "consistent", "optimal", "converged", "supported"), "green"),
+    **dict.fromkeys(("violated", "discontinuous", "feasible", "not_attained"), "yellow"),
+    **dict.fromkeys(("inconsistent", "depends on the reading", "warning"), "yellow"),
+    **dict.fromkeys(("breaks", "infeasible", "failed", "refuted", "error"), "red"),
 }
 """Colour of a word: green where all is well, yellow where it may be, red where it is not."""
 
@@ -306,7 +284,7 @@ class Columns:
     def _total(self, prose: int) -> int:
         widths = zip(self._widths, self._kinds, strict=True)
         firm = sum(w if kind not in ("~", "…") else min(w, prose) for w, kind in widths)
-        return firm + _BETWEEN * (len(self._widths) - 1)
+        return firm + 2 * (len(self._widths) - 1)
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
         return Measurement(self._total(_NARROWEST), self._total(options.max_width))
@@ -342,3 +320,22 @@ def kept_proofs(count: int) -> str:
     """
     proofs = "1 kept proof was" if count == 1 else f"{count} kept proofs were"
     return f"{proofs} verified instead of searched; --no-cache searches again\n"
+
+
+@contextmanager
+def interrupted_by(handler: Callable[[int, FrameType | None], object]) -> Iterator[None]:
+    """Have a function answer Ctrl-C for a while; in another thread than the main one nothing does.
+
+    After a KeyboardInterrupt only processes end: a second Ctrl-C would say the same again.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, handler)
+    try:
+        yield
+    except KeyboardInterrupt:
+        before = signal.SIG_IGN
+        raise
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -8,10 +8,10 @@ from typing import Literal
 from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
 from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
-from ..documents import ShowDocument, capital, json_text, quoted, show_document
+from ..documents import ShowDocument, capital, quoted, show_document
 from .input import read_case
 from .options import AsJson, Out, ProblemId, ReadingId, Source
-from .output import emit, new_output
+from .output import answer
 
 
 def show(
@@ -22,16 +22,14 @@ def show(
     out: Out = None,
 ) -> int:
     """Show what a case contains, and what it leaves open."""
-    with new_output(out) as write:
-        found = read_case(case)
-        document = show_document(found, problem, reading)
-        write(json_text(document))
-    emit(document, lambda shown: _tables(shown, found), as_json)
+    found = read_case(case)
+    answer(
+        lambda: show_document(found, problem, reading),
+        lambda shown: _tables(shown, found),
+        as_json,
+        out,
+    )
     return 0
-
-
-_UNTITLED = "as stated below"
-"""What a problem is called that has no title: the next table states it."""
 
 
 def _tables(document: ShowDocument, case: Case) -> list[Block]:
@@ -46,7 +44,7 @@ def _tables(document: ShowDocument, case: Case) -> list[Block]:
         *([f"minimised: {objective}, not time alone"] if objective else []),
         "",
     ]
-    problems = [(p.id, p.title or p.why or _UNTITLED) for p in document.problems]
+    problems = [(p.id, p.title or p.why or "as stated below") for p in document.problems]
     labels = case.labels
     readings = [
         (r.id + (" (default)" if r.default else ""), _meaning(r, labels)) for r in document.readings
@@ -101,17 +99,13 @@ def _asked(document: ShowDocument, case: Case) -> list[Block]:
     return [Prose(f"Curve, units and limits{under}:"), table(names, rows)]
 
 
-_SPLINES = ("quintic-spline", "septic-spline")
-"""Families whose name says what holds at the ends, unless the file chooses it."""
-_DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
-"""What papers call a derivative; higher ones are called by their order."""
-
-
 def _ends(one: Statement) -> str:
     """What is prescribed at the ends of a spline whose name does not say it."""
     block = one.declaration
     chosen = block.end_orders is not None or block.finish_orders is not None
-    if block.family != "cubic-spline" and not (block.family in _SPLINES and chosen):
+    # The names of these two say what holds at the ends, unless the file chooses it.
+    named = block.family in ("quintic-spline", "septic-spline")
+    if block.family != "cubic-spline" and not (named and chosen):
         return ""
     if block.finish_orders is None and block.finish_derivatives is None:
         return _zeros(block.orders, block.end_derivatives, "at the ends")
@@ -121,7 +115,9 @@ def _ends(one: Statement) -> str:
 
 def _zeros(orders: Sequence[int], values: object, where: str) -> str:
     """What is 0 at an end; where something else is given, the curve's name says so."""
-    names = " and ".join(_DERIVATIVES.get(k, f"derivative {k}") for k in orders)
+    # Papers call higher derivatives by their order.
+    words = {1: "velocity", 2: "acceleration", 3: "jerk"}
+    names = " and ".join(words.get(k, f"derivative {k}") for k in orders)
     return f", {names} 0 {where}" if names and values is None else ""
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -20,57 +19,18 @@ from ...nlp import (
     with_other_route,
 )
 from ...nlp.retiming import Retiming, retime
-from ...problem import Case, Coupling, Problem, fit, shown_bound
+from ...problem import Case, CaseError, Coupling, Problem, fit, shown_bound
 from ...verify import Subject
 from ..audits import Pair, Study, in_words
 from ..blocks import Block, Prose, seconds, table
-from ..documents import (
-    Answer,
-    SolveDocument,
-    SolveResult,
-    Why,
-    json_text,
-    reason,
-    solve_result,
-    value_or_none,
-)
+from ..documents import Answer, SolveDocument, SolveResult, Why, reason, solve_result, value_or_none
+from . import options as given
 from .certifying import certify_case
 from .input import Selected, naming, read_case, select
 from .motion_checking import MotionOptions
-from .options import (
-    FAMILY,
-    MOST,
-    USUAL,
-    AccelerationLimit,
-    AsJson,
-    Coupled,
-    DecelerationLimit,
-    Form,
-    JerkLimit,
-    LimitsFile,
-    MotionUnits,
-    NoCache,
-    Out,
-    PositionLimit,
-    ProblemId,
-    ProofWorkers,
-    Rate,
-    ReadingId,
-    Retimed,
-    SamplesFile,
-    UrdfFile,
-    VelocityLimit,
-)
-from .output import emit, new_output, progress
-from .result_tables import by_result, place, reasons
-from .solve_files import (
-    AskedSamples,
-    asked_samples,
-    check_one_motion,
-    points_case,
-    write_motion,
-    written_lines,
-)
+from .motion_results import by_result, place, reasons
+from .output import answer, new_output, progress
+from .solve_files import AskedSamples, points_case, write_motion, written_lines
 
 
 def solve(
@@ -82,11 +42,11 @@ def solve(
             "with limits as options.",
         ),
     ],
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    coupling: Coupled = None,
+    problem: given.ProblemId = None,
+    reading: given.ReadingId = None,
+    coupling: given.Coupled = None,
     starts: Annotated[
-        int, typer.Option(min=1, max=MOST, help="Number of starts of the solver.")
+        int, typer.Option(min=1, max=given.MOST, help="Number of starts of the solver.")
     ] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     prove: Annotated[
@@ -145,24 +105,24 @@ def solve(
             "repeated.",
         ),
     ] = None,
-    workers: ProofWorkers = None,
-    velocity: VelocityLimit = None,
-    acceleration: AccelerationLimit = None,
-    deceleration: DecelerationLimit = None,
-    jerk: JerkLimit = None,
-    position: PositionLimit = None,
-    limits: LimitsFile = None,
-    urdf: UrdfFile = None,
-    units: MotionUnits = None,
-    family: Annotated[str | None, typer.Option(help=FAMILY, show_default=USUAL)] = None,
-    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None,
-    samples: SamplesFile = None,
-    rate: Rate = None,
-    form: Form = None,
-    retimed: Retimed = False,
-    no_cache: NoCache = False,
-    as_json: AsJson = False,
-    out: Out = None,
+    workers: given.ProofWorkers = None,
+    velocity: given.VelocityLimit = None,
+    acceleration: given.AccelerationLimit = None,
+    deceleration: given.DecelerationLimit = None,
+    jerk: given.JerkLimit = None,
+    position: given.PositionLimit = None,
+    limits: given.LimitsFile = None,
+    urdf: given.UrdfFile = None,
+    units: given.MotionUnits = None,
+    family: given.Family = None,
+    degree: given.Degree = None,
+    samples: given.SamplesFile = None,
+    rate: given.Rate = None,
+    form: given.Form = None,
+    retimed: given.Retimed = False,
+    no_cache: given.NoCache = False,
+    as_json: given.AsJson = False,
+    out: given.Out = None,
 ) -> int:
     """Solve a case exactly: all its problems under all its readings.
 
@@ -173,34 +133,27 @@ def solve(
 
     With --certify, Ctrl-C leaves the best interval, and a state to continue from.
     """
-    flags = {
-        "velocity": velocity,
-        "acceleration": acceleration,
-        "deceleration": deceleration,
-        "jerk": jerk,
-        "position": position,
-    }
-    stated = MotionOptions(flags, limits, urdf, units=units)
-    read = _read(case, stated, family, degree)
+    read = _read(case, MotionOptions.of(locals()), family, degree)
+    of_samples = {"--rate": rate, "--retimed": retimed or None, "--format": form}
+    lone = [name for name, value in of_samples.items() if value is not None]
     if not certify:
-        options = {
+        of_proofs = {
             "--gap": gap,
             "--any-curve": any_curve or None,
             "--certificates": certificates,
             "--resume": resume or None,
             "--workers": workers,
         }
-        for name, value in options.items():
+        for name, value in of_proofs.items():
             if value is not None:
                 raise typer.BadParameter(f"{name} needs --certify")
-        if samples is None and (rate is not None or form is not None or retimed):
-            lone = "--rate" if rate is not None else "--retimed" if retimed else "--format"
-            raise typer.BadParameter(f"{lone} needs --samples")
-        asked = None if samples is None else asked_samples(samples, rate, form, retimed)
+        if samples is None and lone:
+            raise typer.BadParameter(f"{lone[0]} needs --samples")
+        asked = None if samples is None else AskedSamples.of(samples, rate, form, retimed)
         return _solve_case(
             read, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
         )
-    if samples is not None or rate is not None or form is not None or retimed:
+    if samples is not None or lone:
         raise typer.BadParameter("--samples needs a solution; leave --certify out")
     return certify_case(
         read,
@@ -247,24 +200,31 @@ def _solve_case(
 ) -> int:
     """Solve each selected problem and reading; write the motion of the first if asked to."""
     selected = select(case, problem, reading, coupling)
-    if asked is not None:
-        check_one_motion(case, selected)
+    problems = list(dict.fromkeys(one.problem_id for one in selected))
+    if asked is not None and len(problems) > 1:  # a file holds one motion, of the first reading
+        why = f"{len(problems)} problems; add --problem {problems[0]}"
+        raise CaseError(case.file, "--samples", why)
     samples_file = None if asked is None else asked.file
-    with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
+
+    def made() -> SolveDocument:
         results, written = [], None
         retimings: _Retimings = {}
-        with progress("solve", len(selected)) as step, naming(case.file):
+        with (
+            new_output(samples_file, "--samples") as write_samples,
+            progress("solve", len(selected)) as step,
+            naming(case.file),
+        ):
             for one in selected:
                 step(in_words(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
-                    result, answer = _solved(case, one, starts, seed, prove, retimings)
+                    result, found = _solved(case, one, starts, seed, prove, retimings)
                 results.append(result)
                 if asked is not None and written is None:
-                    text, written = write_motion(one, answer, asked)
+                    text, written = write_motion(one, found, asked)
                     write_samples(text)
-        document = SolveDocument(results=tuple(results), written=written)
-        write(json_text(document))
-    emit(document, lambda shown: _tables(shown, case), as_json)
+        return SolveDocument(results=tuple(results), written=written)
+
+    answer(made, lambda shown: _tables(shown, case), as_json, out)
     return 0
 
 
@@ -308,27 +268,23 @@ def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
     return known[key]
 
 
-_COLUMNS = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
-"""What the table says of each result, or of each of its joints."""
-
-
 def _tables(document: SolveDocument, case: Case) -> list[Block]:
     results = document.results
     parts: list[Block] = [Prose(results[0].case, "heading")]
-    parts += by_result(results, _COLUMNS, _cells, "longest", case)
+    columns = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
+    parts += by_result(results, columns, _cells, "longest", case)
     parts += [Prose(said) for result in results for said in _procedure(result, case)]
-    active = [
-        (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
-        for r, name in ((r, in_words(case, r.problem, r.reading)) for r in results)
-        for a in r.active
-    ]
+    active, above = [], ""
+    for r in results:
+        name = in_words(case, r.problem, r.reading)
+        for a in r.active:
+            cells = (place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
+            # A name that repeats the one above stays blank.
+            active.append(("" if name == above else name, *cells) if len(results) > 1 else cells)
+            above = name
     if active:
         limits = ("limit reached", ">multiplier s", ">10 % more changes s")
-        parts.append(
-            table(("~problem", *limits), _without_repeats(active, 1))
-            if len(results) > 1
-            else table(limits, [row[1:] for row in active])
-        )
+        parts.append(table(("~problem", *limits) if len(results) > 1 else limits, active))
     parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
     if document.written is not None:
@@ -360,34 +316,21 @@ def _procedure(result: SolveResult, case: Case) -> list[str]:
         return []
     under = in_words(case, result.problem, result.reading)
     name = f"{under}: longest per segment"
-    shared = result.shared
-    together = [] if shared is None else [f"{under}: {_together(shared)}"]
+    lines = []
+    if result.shared is not None:
+        shared = result.shared
+        durations = " ".join(f"{d:.4f}" for d in value_or_none(shared.segment_durations) or ())
+        beside = f" ({durations} s)" if durations else ""
+        lines.append(
+            f"{under}: all joints with the same durations: {shared.status}, "
+            f"{seconds(shared.total_time)} s, {shared.evidence}{beside}"
+        )
     if isinstance(longest.verdict, Why):
-        return [*together, f"{name}: none, {longest.verdict}"]
-    lines = [*together, f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
+        return [*lines, f"{name}: none, {longest.verdict}"]
+    lines.append(f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s")
     for span in longest.ranges:
         lines.append(
             f"  {span.lowest:.6f} to {span.highest:.6f} s while each joint stays within "
             f"{span.slack:g} s of its own optimum"
         )
     return lines
-
-
-def _together(shared: Answer) -> str:
-    """The optimum with durations that all joints share."""
-    durations = " ".join(f"{d:.4f}" for d in value_or_none(shared.segment_durations) or ())
-    return (
-        f"all joints with the same durations: {shared.status}, {seconds(shared.total_time)} s, "
-        f"{shared.evidence}" + (f" ({durations} s)" if durations else "")
-    )
-
-
-def _without_repeats(rows: Iterable[Sequence[object]], count: int) -> list[Sequence[object]]:
-    """Blank the first cells of a row where they repeat those of the row above."""
-    shown: list[Sequence[object]] = []
-    above: Sequence[object] = ()
-    for row in rows:
-        same = list(row[:count]) == list(above[:count])
-        shown.append((*("" for _ in range(count)), *row[count:]) if same else row)
-        above = row
-    return shown

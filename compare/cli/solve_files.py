@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 
 from ...nlp import Solution, retimed_motion
-from ...problem import Case, CaseError, FileLimits, TrajgapError, parse_case, scaffold
+from ...problem import Case, CaseError, FileLimits, parse_case, scaffold
 from ...problem.limit_files import read_urdf
 from ...problem.motions import (
     Evaluated,
@@ -22,8 +23,8 @@ from ...problem.motions import (
 )
 from ..audits import in_words
 from ..documents import WrittenMotion, value_or_none
-from .input import Selected
-from .motion_checking import MotionOptions, stated_limits, words
+from .input import Selected, naming
+from .motion_checking import MotionOptions, stated_limits, word_of, words
 from .motion_results import checked_motion
 from .output import warn
 
@@ -44,7 +45,8 @@ def points_case(
         limits_of=limits_of_table(source, options),
         warn=lambda doubt: warn([doubt]),
     )
-    return parse_case(text, source)
+    hashed = sha256(Path(source).read_bytes()).hexdigest()
+    return replace(parse_case(text, source), sha256=hashed)
 
 
 def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str, ...]], FileLimits]:
@@ -56,13 +58,9 @@ def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str,
     def found(joints: tuple[str, ...]) -> FileLimits:
         if options.urdf and joints == numbered(len(joints)):
             joints = _names(source, options.urdf, len(joints))
-        try:
+        with naming(str(options.urdf or "limits")):
             stated, _ = stated_limits(joints, words(options.units) or ("rad",), options)
             limits = stated.two_sided
-        except CaseError:
-            raise
-        except TrajgapError as error:
-            raise CaseError(str(options.urdf or "limits"), "", str(error)) from None
         slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
         doubt = slower and (
             f"deceleration has its own limit at joint {', '.join(slower)}; here the smaller value "
@@ -88,45 +86,26 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
     return names
 
 
-_RATE = 500.0
-"""Rows a second by default: what arms of today are commanded at."""
-
-
 @dataclass(frozen=True)
 class AskedSamples:
-    """What is to be written."""
+    """What is to be written; 500 rows a second, as arms of today are commanded, by default."""
 
     file: Path
     rate: float
     form: MotionForm
-    retimed: bool = False
+    retimed: bool
 
-
-def asked_samples(
-    file: Path, rate: float | None, form: str | None, retimed: bool = False
-) -> AskedSamples:
-    """What the command line asks to be written."""
-    try:
-        wanted = MotionForm(form or "csv")
-    except ValueError:
-        known = ", ".join(MotionForm)
-        raise CaseError("--format", "", f"{form!r} is unknown; use {known}") from None
-    return AskedSamples(file, _RATE if rate is None else rate, wanted, retimed)
-
-
-def check_one_motion(case: Case, selected: Sequence[Selected]) -> None:
-    """Refuse more than one problem: a file holds one motion, of the first reading."""
-    problems = list(dict.fromkeys(one.problem_id for one in selected))
-    if len(problems) > 1:
-        raise CaseError(
-            case.file, "--samples", f"{len(problems)} problems; add --problem {problems[0]}"
-        )
+    @classmethod
+    def of(cls, file: Path, rate: float | None, form: str | None, retimed: bool) -> AskedSamples:
+        """What the command line asks for."""
+        wanted = word_of("--format", form or "csv", MotionForm)
+        return cls(file, 500.0 if rate is None else rate, wanted, retimed)
 
 
 def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:
     """Text of a motion, and what is true of it when it is read back."""
     name = str(asked.file)
-    try:
+    with naming(name, "--samples"):
         joints = one.problem.joints
         motion: Evaluated = answer.trajectory
         if asked.retimed:
@@ -134,10 +113,6 @@ def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[
         text = motion_text(motion, asked.form, 1.0 / asked.rate, joints, one.problem.linear)
         limits = JointLimits.of(one.problem.limits, one.problem.joints)
         found = check_motion(read_back(text, asked.form, name), limits)
-    except CaseError:
-        raise
-    except TrajgapError as error:
-        raise CaseError(name, "--samples", str(error)) from None
     return text, WrittenMotion(
         file=name,
         form=asked.form,
@@ -154,11 +129,9 @@ def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     result = written.result
     worst = value_or_none(result.worst)
     ratio = "" if worst is None else f", largest ratio {worst.ratio:.6f}"
-    lines = [
-        f"{written.file}: the motion as {written.form} "
-        f"({in_words(case, written.problem, written.reading)}); "
-        f"read back: {result.verdict}{ratio} ({result.concluded[0].rstrip('.')})"
-    ]
+    under = in_words(case, written.problem, written.reading)
+    back = f"read back: {result.verdict}{ratio} ({result.concluded[0].rstrip('.')})"
+    lines = [f"{written.file}: the motion as {written.form} ({under}); {back}"]
     if result.verdict != "pass" and written.form is MotionForm.CSV:
         lines.append(
             "a break of the curve lies between two rows; --format ros writes it as a point, and "

@@ -7,13 +7,13 @@ import os
 import shlex
 import signal
 import sys
-import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from datetime import timedelta
 from itertools import groupby
 from math import inf
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
 
@@ -21,36 +21,12 @@ import numpy as np
 import typer
 
 from ...problem import CaseError, replace_file
+from .. import gaps
 from ..audits import in_words
-from ..blocks import Block, Prose, brief_board, table
-from ..documents import (
-    noted,
-    percent,
-)
-from ..gaps import (
-    LEADERBOARD,
-    Engine,
-    Row,
-    RowStatus,
-    Store,
-    StudyPlan,
-    StudyProblem,
-    StudySession,
-    boards,
-    check_export,
-    export_rows,
-    leaderboard_study,
-    load_study,
-    on_dask,
-    on_this_machine,
-    quantiles,
-    run_study,
-    study_rows,
-    summaries_text,
-    summed_up,
-)
-from .options import INTERRUPTED, ONE_BY_ONE, run_store, run_workers
-from .output import NEVER_RAN, progress, rendered, say
+from ..blocks import ONE_BY_ONE, Block, Prose, brief_board, table
+from ..documents import noted, percent
+from .options import INTERRUPTED, run_store, run_workers
+from .output import NEVER_RAN, interrupted_by, progress, rendered, say
 
 
 def study(
@@ -97,82 +73,63 @@ def study(
             "--workers cannot be combined with --dask, whose cluster has its own"
         )
     exports = export or []
-    shipped = file == Path(LEADERBOARD)
-    path = store or file.with_suffix(_ENDING)
+    shipped = file == Path(gaps.LEADERBOARD)
+    path = store or file.with_suffix(".sqlite")
     if path == file:
         raise CaseError(str(path), "--store", "is the study file itself; give another")
     for one in exports:
-        check_export(one)
+        gaps.check_export(one)
         if exports.count(one) > 1:
             raise CaseError(str(one), "--export", "is named twice; name it once")
     if summary is not None and summary.suffix != ".csv":
         raise CaseError(str(summary), "--summary", "is not a .csv file; give one")
-    plan = leaderboard_study() if shipped else load_study(file)
+    plan = gaps.leaderboard_study() if shipped else gaps.load_study(file)
     again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
-    with Store(path) as kept:
-        session = StudySession(total=len(plan), resumed=0)
+    cores = workers or os.cpu_count() or 1
+    engines = gaps.on_this_machine(cores) if dask is None else gaps.on_dask(dask)
+    with gaps.Store(path) as kept:
+        session = gaps.StudySession(total=len(plan), resumed=0)
         try:
-            with _engine(workers, dask) as engine, progress("study", len(plan)) as step:
+            with engines as engine, progress("study", len(plan)) as step:
                 begun = time.monotonic()
 
-                def show(now: StudySession) -> None:
+                def show(now: gaps.StudySession) -> None:
                     nonlocal session
                     session = now
                     step(_going(now, time.monotonic() - begun))
 
                 step("the optima from which gaps are measured")
-                with _interruptible():
-                    session = run_study(plan, kept, engine, retry=retry, progress=show)
+                # Ctrl-C ends the session with its tally, instead of the program at once.
+                with interrupted_by(signal.default_int_handler):
+                    session = gaps.run_study(plan, kept, engine, retry=retry, progress=show)
         except KeyboardInterrupt:
             rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
-            print(f"\ntrajgap: {_interrupted(session, [*again, *rest])}", file=sys.stderr)
+            done = f"{session.resumed + session.run:,} of {session.total:,} runs are stored"
+            command = shlex.join([*again, *rest])
+            said = f"interrupted; {done}; `{command}` continues from there"
+            print(f"\ntrajgap: {said}", file=sys.stderr)
             return INTERRUPTED
         for one in exports:
-            export_rows(study_rows(plan, kept), one)
+            gaps.export_rows(gaps.study_rows(plan, kept), one)
         if summary is not None:
-            replace_file(summary, summaries_text(summed_up(plan, kept)))
+            replace_file(summary, gaps.summaries_text(gaps.summed_up(plan, kept)))
         parts, never_ran = _summary(plan, kept, session, path, exports, again)
         say(rendered(parts))
     return NEVER_RAN if never_ran else 0
 
 
-_ENDING = ".sqlite"
-"""Of the store beside a study file."""
 _COLUMNS = ("optimiser", "~settings", "handling", ">budget", ">runs", ">failed", ">feasible",
             ">best gap", ">median gap")  # fmt: skip
 """What a table says of the runs of one optimiser under one settings."""
-Cells = tuple[object, ...]
-"""A row of such a table."""
-_MESSAGES = 5
-"""Different messages of failed runs that are printed: the store and the exports have all."""
+_NAMED = attrgetter("problem", "reading", "optimizer", "settings", "handling", "budget")
+"""What the runs of a row of such a table have in common."""
 
 
 def _options(name: str, paths: Sequence[Path]) -> list[str]:
     return [word for one in paths for word in (name, str(one))]
 
 
-def _engine(workers: int | None, dask: str | None) -> AbstractContextManager[Engine]:
-    return on_dask(dask) if dask is not None else on_this_machine(workers or os.cpu_count() or 1)
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Let Ctrl-C end the session with its tally, instead of the program at once."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        yield
-    except KeyboardInterrupt:
-        # What follows only ends processes; a second Ctrl-C would say the same again.
-        before = signal.SIG_IGN
-        raise
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def _going(now: StudySession, seconds: float) -> str:
+def _going(now: gaps.StudySession, seconds: float) -> str:
     done = now.resumed + now.run
     words = f"{done:,} of {now.total:,} runs"
     if now.run and seconds:
@@ -182,54 +139,51 @@ def _going(now: StudySession, seconds: float) -> str:
     return words + (f", {now.failed:,} failed" if now.failed else "")
 
 
-def _interrupted(session: StudySession, again: Sequence[str]) -> str:
-    done = session.resumed + session.run
-    return (
-        f"interrupted; {done:,} of {session.total:,} runs are stored; `{shlex.join(again)}` "
-        "continues from there"
-    )
-
-
 def _summary(
-    plan: StudyPlan,
-    kept: Store,
-    session: StudySession,
+    plan: gaps.StudyPlan,
+    kept: gaps.Store,
+    session: gaps.StudySession,
     path: Path,
     exports: Sequence[Path],
     again: Sequence[str],
 ) -> tuple[list[Block], bool]:
     """What the runs came to, and whether all of some optimiser on some problem failed."""
-    found: dict[tuple[str, str], list[Cells]] = {}
-    messages, failed, never_ran = dict[str, int](), 0, False
-    for (problem, reading, optimizer, settings, handling, budget), group in groupby(
-        study_rows(plan, kept), _named
-    ):
+    found: dict[tuple[str, str], list[tuple[object, ...]]] = {}
+    messages, never_ran = Counter[str](), False
+    for (problem, reading, *named), group in groupby(gaps.study_rows(plan, kept), _NAMED):
         runs = list(group)
-        bad = [row.message for row in runs if row.status is RowStatus.FAILED]
-        for message in bad:
-            messages[message] = messages.get(message, 0) + 1
-        failed += len(bad)
+        bad = [row.message for row in runs if row.status is gaps.RowStatus.FAILED]
+        messages.update(bad)
         never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
-        named = optimizer, _readable(settings), handling, f"{budget:,}"
-        cells = (*named, len(runs), len(bad), passed, *_gaps(runs))
+        optimizer, settings, handling, budget = named
+        # Words that a narrow column can break between.
+        own = [f"{name} {json.dumps(value)}" for name, value in json.loads(settings).items()]
+        said = optimizer, ", ".join(own) or "its own", handling, f"{budget:,}"
+        # Least and median gap; a run without a feasible time counts as infinite.
+        ends = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
+        best_and_median = [percent(gap) for gap in gaps.quantiles(np.array(ends), [0.0, 0.5])]
+        if all(row.reference_upper is None for row in runs):
+            best_and_median = ["no optimum", ""]
+        cells = (*said, len(runs), len(bad), passed, *best_and_median)
         found.setdefault((problem, reading), []).append(cells)
     parts: list[Block] = [
         Prose(
             f"{path}: {session.run:,} runs were done now, {session.resumed:,} were already stored",
             "heading",
         ),
-        *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
+        *(_boards(plan, kept) if plan.file == gaps.LEADERBOARD else _tables(plan, found)),
         Prose("A gap is that of the feasible time, (T − U)/U against the best known total U."),
     ]
-    for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
+    # Five are printed; the store and the exports have all.
+    for message, count in messages.most_common(5):
         parts.append(Prose(f"failed, {count:,} times: {message}", "warning"))
-    if len(messages) > _MESSAGES:
-        parts.append(Prose(f"and {len(messages) - _MESSAGES:,} other messages (see the exports)"))
+    if len(messages) > 5:
+        parts.append(Prose(f"and {len(messages) - 5:,} other messages (see the exports)"))
     if session.run:
         parts.append(Prose(f"{session.seconds / session.run:.3g} s a run", "note"))
     parts += [Prose(f"written: {one}") for one in exports]
-    if failed:
+    if messages:
         parts.append(Prose(f"to repeat the failed runs: {shlex.join([*again, '--retry'])}"))
     if not exports:
         name = f"{Path(plan.file).stem}.csv"
@@ -237,16 +191,14 @@ def _summary(
     return parts, never_ran
 
 
-def _tables(plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]) -> list[Block]:
+def _tables(
+    plan: gaps.StudyPlan, found: Mapping[tuple[str, str], Sequence[Sequence[object]]]
+) -> list[Block]:
     """What the runs on each problem came to, with what was chosen for it."""
     if len(plan.problems) > ONE_BY_ONE:
-        rows = [(*ids, *cells) for ids, own in found.items() for cells in own]
-        notes = dict.fromkeys(
-            [
-                *plan.notes,
-                *(f"{_words(one)}: {note}" for one in plan.problems for note in one.notes),
-            ]
-        )
+        rows = [(*ids, *cells) for ids, each in found.items() for cells in each]
+        own = [f"{_words(one)}: {note}" for one in plan.problems for note in one.notes]
+        notes = dict.fromkeys([*plan.notes, *own])
         return [table(("problem", "reading", *_COLUMNS), rows), *map(Prose, notes)]
     parts: list[Block] = []
     for one in plan.problems:
@@ -257,10 +209,10 @@ def _tables(plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]) -
     return parts
 
 
-def _boards(plan: StudyPlan, kept: Store) -> list[Block]:
+def _boards(plan: gaps.StudyPlan, kept: gaps.Store) -> list[Block]:
     """Where each optimiser stands over all problems: their own lines would be thousands."""
     parts: list[Block] = []
-    for board in boards(summed_up(plan, kept)):
+    for board in gaps.boards(gaps.summed_up(plan, kept)):
         head = f"{board.handling}, {board.budget:,} evaluations, {len(board.problems)} instances"
         parts.append(Prose(head, "heading"))
         parts.append(brief_board(board))
@@ -270,26 +222,7 @@ def _boards(plan: StudyPlan, kept: Store) -> list[Block]:
     return [*parts, *(Prose(note, "note") for note in plan.notes)]
 
 
-def _words(one: StudyProblem) -> str:
+def _words(one: gaps.StudyProblem) -> str:
     """What a problem of a study is called."""
     joint = "" if one.joint is None else f"joint {one.joint} alone; "
     return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
-
-
-def _named(row: Row) -> tuple[str, str, str, str, str, int]:
-    return row.problem, row.reading, row.optimizer, row.settings, row.handling, row.budget
-
-
-def _readable(settings: str) -> str:
-    """Settings of a row, which are JSON, in words that a narrow column can break between."""
-    each = json.loads(settings)
-    return ", ".join(f"{name} {json.dumps(value)}" for name, value in each.items()) or "its own"
-
-
-def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
-    """Least and median gap; a run without a feasible time counts as infinite."""
-    if all(row.reference_upper is None for row in runs):
-        return "no optimum", ""
-    found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
-    best, median = quantiles(np.array(found), [0.0, 0.5])
-    return percent(best), percent(median)

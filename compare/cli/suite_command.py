@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
@@ -29,16 +28,11 @@ from ..documents import (
     suite_document,
     value_or_none,
 )
-from .options import ENDS, AsJson, Out
-from .output import emit, new_output, progress, say
+from .options import ENDS, AsJson, Out, command_group
+from .output import answer, progress, say
 
 # Commands of the suite.
-suite = typer.Typer(
-    add_completion=False,
-    rich_markup_mode=None,
-    invoke_without_command=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+suite = command_group(invoke_without_command=True)
 
 Folder = Annotated[
     Path,
@@ -65,10 +59,14 @@ def _suite(
     if not chosen:
         known = ", ".join(sorted({one.curve for one in list_instances()}))
         raise CaseError("suite", "--curve", f"no curve is called {curve!r}; known: {known}")
-    with new_output(out) as write:
-        document = suite_document(chosen)
-        write(json_text(document))
-    emit(document, lambda shown: _table(shown, chosen), as_json)
+    certified = sum(one.evidence == "certified" for one in chosen)
+
+    def summary(document: SuiteDocument) -> list[Block]:
+        many = f"{len(chosen)} instances, {certified} certified to 1 % or better"
+        said = Prose(f"suite {document.version}: {many}")
+        return [suite_table(chosen, brief=True), said]
+
+    answer(lambda: suite_document(chosen), summary, as_json, out)
     return 0
 
 
@@ -81,11 +79,10 @@ def show(
     out: Out = None,
 ) -> int:
     """Show an instance: bounds, where it comes from, how hard it is, how to verify it."""
-    with new_output(out) as write:
-        one = load_instance(name)
-        document = instance_document(one, _certificate(one))
-        write(json_text(document))
-    emit(document, lambda shown: _shown(shown, one), as_json)
+    one = load_instance(name)
+    file = one.certificate_file()
+    path = None if file is None else shlex.quote(str(file))
+    answer(lambda: instance_document(one, path), lambda shown: _shown(shown, one), as_json, out)
     return 0
 
 
@@ -126,20 +123,6 @@ def pages(out: Folder) -> int:
 
 _MARK = "suite.json"
 """The file by which a folder that was written so is known."""
-
-
-def _table(document: SuiteDocument, chosen: Sequence[BenchmarkInstance]) -> list[Block]:
-    certified = sum(one.evidence == "certified" for one in chosen)
-    said = (
-        f"suite {document.version}: {len(chosen)} instances, {certified} certified to 1 % or better"
-    )
-    return [suite_table(chosen, brief=True), Prose(said)]
-
-
-def _certificate(one: BenchmarkInstance) -> str | None:
-    """Path of the certificate as a shell takes it."""
-    file = one.certificate_file()
-    return None if file is None else shlex.quote(str(file))
 
 
 def _shown(document: SuiteShowDocument, one: BenchmarkInstance) -> list[Block]:

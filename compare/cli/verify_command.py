@@ -23,19 +23,11 @@ from ...verify import (
 )
 from ..audits import asked_as, in_words
 from ..blocks import Prose
-from ..documents import (
-    UNNAMED,
-    AskedQuestion,
-    JudgedFile,
-    VerifyDocument,
-    json_text,
-    verify_document,
-    worth,
-)
+from ..documents import UNNAMED, AskedQuestion, JudgedFile, VerifyDocument, verify_document, worth
 from .certifying import Question, questions_of
 from .input import read_case, select
 from .options import AsJson, Out
-from .output import emit, new_output, progress
+from .output import answer, progress
 
 
 def verify(
@@ -52,8 +44,7 @@ def verify(
         ),
     ] = None,
     seconds: Annotated[
-        float,
-        typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file."),
+        float, typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file.")
     ] = 60.0,
     as_json: AsJson = False,
     out: Out = None,
@@ -73,15 +64,16 @@ def verify(
             for coupling in Coupling
             for question in questions_of(stated, one, coupling)
         ]
-    with new_output(out) as write:
-        verdicts: list[JudgedFile] = []
+    verdicts: list[JudgedFile] = []
+
+    def made() -> VerifyDocument:
         with progress("verify", len(files)) as step:
             for path in files:
                 step(path.name)
                 verdicts.append((str(path), *_verdict(path, seconds, asked)))
-        document = verify_document(verdicts)
-        write(json_text(document))
-    emit(document, lambda shown: _verified(shown, stated), as_json)
+        return verify_document(verdicts)
+
+    answer(made, lambda shown: _verified(shown, stated), as_json, out)
     good = all(verdict.proves and not isinstance(about, str) for _, verdict, about in verdicts)
     return 0 if good else 1
 
@@ -149,11 +141,7 @@ def _found(found: AskedQuestion, named: AskedQuestion, case: Case | None) -> str
 
 
 def _asked(question: AskedQuestion) -> str:
-    named = {
-        "case": question.case,
-        "problem": question.problem,
-        "reading": question.reading,
-        "joint": question.joint,
-    }
-    parts = (f"{key} {value}" for key, value in named.items() if value is not None)
+    keys = ("case", "problem", "reading", "joint")
+    named = [(key, getattr(question, key)) for key in keys]
+    parts = [f"{key} {value}" for key, value in named if value is not None]
     return ", ".join(parts) or "a problem without a case"

@@ -1,14 +1,16 @@
-"""What `bench` answers: how far each optimiser ends from the optimum, and how often."""
+"""How far runs of optimisers end from the optimum: what `bench` answers, and in an audit."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from pydantic import Field
 
 from .entry import Count, Document, Entry, OrWhy, Real, Why
-from .finding import Reference
+from .finding import Gap, Reference, percent_digits
+from .why_judged import noted
 
 
 class TargetReached(Entry):
@@ -27,6 +29,15 @@ class TargetReached(Entry):
     evaluations_lowest: OrWhy[float]
     evaluations_highest: OrWhy[float]
     """95 % interval, by resampling runs; unbounded where samples hold no run that reaches it."""
+
+    @property
+    def spent(self) -> tuple[str, str]:
+        """Expected evaluations, and their interval, of which an end without bound is ∞."""
+        if isinstance(self.evaluations, Why):
+            return "never", ""
+        ends = (self.evaluations_lowest, self.evaluations_highest)
+        low, high = ("∞" if isinstance(end, Why) else f"{end:.0f}" for end in ends)
+        return f"{self.evaluations:.0f}", f"{low} to {high}"
 
 
 class Standing(Entry):
@@ -104,9 +115,22 @@ class BenchResult(Entry):
         return self.words or ", ".join(part for part in (self.problem, self.reading) if part)
 
     @property
+    def messages(self) -> tuple[str, ...]:
+        """Why runs failed or have no answer, each with its optimiser."""
+        return tuple(f"{s.optimizer}: {message}" for s in self.standings for message in s.messages)
+
+    @property
     def verdict(self) -> str:
-        """Which optimiser is closest, in a sentence."""
-        return closest(self.standings)
+        """Which optimiser is closest to the optimum by its median gap, in a sentence."""
+        known = [(s.median, s) for s in self.standings if isinstance(s.median, float)]
+        if not known:
+            return "No optimiser found a feasible answer in more than half of its runs."
+        median, first = known[0]
+        runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
+        said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"
+        for gap, second in known[1:2]:
+            said += f"; next: {second.optimizer} ({percent(gap)})"
+        return f"{said}."
 
     def __str__(self) -> str:
         names = [name.lstrip(">") for name in BENCH_COLUMNS]
@@ -119,8 +143,7 @@ class BenchResult(Entry):
             ).rstrip()
             for row in table
         ]
-        said = [f"{one.optimizer}: {message}" for one in self.standings for message in one.messages]
-        return "\n".join([self.verdict, "", *lines, *said, *self.notes])
+        return "\n".join([self.verdict, "", *lines, *self.messages, *self.notes])
 
 
 class OverallTarget(Entry):
@@ -176,7 +199,7 @@ def bench_cells(standing: Standing) -> tuple[str, ...]:
         gap_cell(standing.best),
         f"{standing.feasible} of {standing.runs}",
         *(f"{100 * target.rate:.0f} %" for target in shown),
-        *(_evaluations(target) for target in shown),
+        *(noted(*target.spent) for target in shown),
     )
 
 
@@ -189,41 +212,90 @@ def gap_cell(gap: float | Why) -> str:
     return "none" if isinstance(gap, Why) else percent(gap)
 
 
-def _evaluations(target: TargetReached) -> str:
-    """Expected evaluations with their interval; an end without bound is ∞."""
-    ends = (target.evaluations_lowest, target.evaluations_highest)
-    if isinstance(target.evaluations, Why):
-        return "never"
-    low, high = ("∞" if isinstance(end, Why) else f"{end:.0f}" for end in ends)
-    return f"{target.evaluations:.0f} ({low} to {high})"
-
-
-def closest(standings: tuple[Standing, ...]) -> str:
-    """Which optimiser is closest to the optimum by its median gap, in a sentence."""
-    known = [(s.median, s) for s in standings if isinstance(s.median, float)]
-    if not known:
-        return "No optimiser found a feasible answer in more than half of its runs."
-    median, first = known[0]
-    runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
-    said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"
-    if len(known) > 1:
-        second = known[1]
-        said += f"; next: {second[1].optimizer} ({percent(second[0])})"
-    return f"{said}."
-
-
 def percent(gap: float) -> str:
-    """A relative gap in percent, with two digits that count; of an infinite one, none."""
+    """A relative gap in percent, with two digits that count; of an infinite one, none.
+
+    Below the checker's tolerance of 1e-9, which is 1e-7 %, the gap of an answer says nothing.
+    """
     if math.isinf(gap):
         return "none"
     value = 100 * gap
-    if 0 < abs(value) < _UNSEEN:
+    if 0 < abs(value) < 1e-7:
         return "< 1e-7 %" if value > 0 else "> −1e-7 %"
-    shown = f"{value:.0f}"
-    if abs(value) < 10:
-        shown = np.format_float_positional(value, precision=2, fractional=False, trim="-")
-    return shown.replace("-", "−") + " %"
+    shown = f"{value:.0f}".replace("-", "−") if abs(value) >= 10 else two_digits(value)
+    return f"{shown} %"
 
 
-_UNSEEN = 1e-7
-"""Percent: the checker's tolerance of 1e-9, below which the gap of an answer says nothing."""
+def two_digits(value: float) -> str:
+    """A number without an exponent, with two digits that count and a true minus sign."""
+    text = np.format_float_positional(value, precision=2, fractional=False, trim="-")
+    return text.replace("-", "−")
+
+
+class Reached(Entry):
+    """Where the runs of one algorithm end, under one handling of vectors that break a limit."""
+
+    problem: str
+    reading: str
+    searched: str
+    """What was searched, in words; no other search of the case is called so."""
+    algorithm: str
+    """Its id in the case."""
+    name: str
+    handling: str
+    """What happened to vectors that break a limit."""
+    budget: Count
+    """Evaluations of a run."""
+    runs: Count
+    unanswered: Count
+    """Runs without a feasible answer."""
+    best: OrWhy[float]
+    lower_quartile: OrWhy[float]
+    median: OrWhy[float]
+    upper_quartile: OrWhy[float]
+    """Totals, s. What falls between two runs is the mean of both; none if either has no answer."""
+    beside: str
+    """What the gaps are set against, in words."""
+    best_gap: OrWhy[Gap]
+    gap: OrWhy[Gap]
+    """Of the best run and of the median, as intervals and never clipped."""
+    within: tuple[TargetReached, ...]
+    """How often and how soon runs come within 1 % and 0.1 %; of joints searched by themselves,
+    until each is so near its own optimum."""
+    totals: tuple[float, ...]
+    """Of every run with an answer, in rising order, s."""
+
+    def __str__(self) -> str:
+        """The median gap of the algorithm in a sentence."""
+        if isinstance(self.median, Why):
+            found = f"no answer in {self.unanswered} of {self.runs} runs"
+            return f"The {self.name} finds {found}."
+        if isinstance(self.gap, Why):
+            end = f"ends at {self.median:.4f} s (median); {self.gap}"
+            return f"In {self.runs} runs, the {self.name} {end}."
+        far = f"{apart(self.gap)} {self.beside}"
+        return f"In {self.runs} runs, the {self.name} ends {far} (median)."
+
+    @property
+    def briefly(self) -> str:
+        """The same in fewer words; empty without an answer."""
+        if isinstance(self.gap, Why):
+            return ""
+        return f"In {self.runs} runs, its algorithm ends {apart(self.gap)} {self.beside} (median)."
+
+
+def apart(gap: Gap) -> str:
+    """A gap in words: how far above, or below."""
+    if gap.lowest < 0 < gap.highest:
+        return f"{gap.percent} from"
+    side = "below" if gap.lowest < 0 else "above"
+    low, high = sorted((abs(100 * gap.lowest), abs(100 * gap.highest)))
+    return f"{' to '.join(percent_digits(low, high))} % {side}"
+
+
+def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:
+    """Algorithms that searched the same, under the words for what they searched."""
+    found: dict[str, list[Reached]] = {}
+    for one in runs:
+        found.setdefault(f"{one.searched[:1].upper()}{one.searched[1:]}", []).append(one)
+    return found

@@ -88,10 +88,7 @@ class Entry(Described, InNotebooks):
     """An object of a document; its fields are the keys, in their order."""
 
     model_config = ConfigDict(
-        frozen=True,
-        arbitrary_types_allowed=True,
-        populate_by_name=True,
-        protected_namespaces=(),
+        frozen=True, arbitrary_types_allowed=True, populate_by_name=True, protected_namespaces=()
     )
 
     @classmethod
@@ -144,14 +141,8 @@ def facts(entry: Entry) -> list[tuple[str, str]]:
     found = []
     for name, field in type(entry).model_fields.items():
         for words in (mark.words for mark in field.metadata if isinstance(mark, Fact)):
-            value = getattr(entry, name)
-            values = (
-                value
-                if isinstance(value, tuple)
-                else ()
-                if value_or_none(value) is None
-                else (value,)
-            )
+            value = value_or_none(getattr(entry, name))
+            values = value if isinstance(value, tuple) else () if value is None else (value,)
             found += [(words, str(one)) for one in values]
     return found
 

@@ -13,13 +13,18 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from ...problem import case_schema
 from .audited import AuditDocument
 from .benched import BenchDocument
-from .certified import CertifyDocument, VerifyDocument
-from .checked import CheckDocument, MotionCheckDocument
+from .checked import CertifyDocument, CheckDocument, MotionCheckDocument, VerifyDocument
 from .entry import SCHEMA, Document, Why
 from .finding import Caveat, CaveatKind
-from .lookups import CaseDiffDocument, CasesDocument, ExplainDocument, ShowDocument
+from .lookups import (
+    CaseDiffDocument,
+    CasesDocument,
+    ExplainDocument,
+    ShowDocument,
+    SuiteDocument,
+    SuiteShowDocument,
+)
 from .solved import SolveDocument
-from .suite import SuiteDocument, SuiteShowDocument
 from .vocabulary import VOCABULARY, Rule, Words, meaning, meanings
 
 DOCUMENTS: tuple[type[Document], ...] = (
@@ -94,36 +99,35 @@ def output_schema() -> dict[str, Any]:
 
 def tables(rules: Iterable[Rule]) -> dict[str, str]:
     """The tables of words and rules in the docs, by name, as Markdown."""
-    found = {words.table: _table(meanings(*words.enums)) for words in VOCABULARY if words.table}
-    rows = "".join(f"| {rule.id} | {_inner(rule.title)} |\n" for rule in rules)
-    return {
-        **found,
-        "rules": f"| id | looks at |\n|---|---|\n{rows}",
-        "words": "| key | values |\n|---|---|\n" + "".join(map(_row, VOCABULARY)),
+    found = {
+        words.table: _table(
+            "word | meaning", ((word, _inner(m)) for word, m in meanings(*words.enums).items())
+        )
+        for words in VOCABULARY
+        if words.table
     }
+    every = ((rule.id, _inner(rule.title)) for rule in rules)
+    keys = ((words.key, _values(words)) for words in VOCABULARY)
+    return {**found, "rules": _table("id | looks at", every), "words": _table("key | values", keys)}
 
 
-def _table(words: Mapping[str, str]) -> str:
-    rows = "".join(f"| {word} | {_inner(said)} |\n" for word, said in words.items())
-    return f"| word | meaning |\n|---|---|\n{rows}"
-
-
-def _row(words: Words) -> str:
-    """One key: its words, explained unless they have a table of their own."""
-    explained = {} if words.table else meanings(*words.enums)
-    every = dict.fromkeys(str(word) for enum in words.enums for word in enum)
-    return f"| {words.key} | {_listed(every, explained)} |\n"
-
-
-def _listed(every: Iterable[str], explained: Mapping[str, str]) -> str:
-    plain = ", ".join(f"`{word}`" for word in every if word not in explained)
-    senses = " ".join(f"`{word}`: {_inner(m)}." for word, m in explained.items())
-    return ". ".join(part for part in (plain, senses) if part)
+def _table(head: str, rows: Iterable[tuple[str, str]]) -> str:
+    cells = (f"| {name} | {said} |\n" for name, said in rows)
+    return f"| {head} |\n|---|---|\n{''.join(cells)}"
 
 
 def _inner(sentence: str) -> str:
     """A sentence as a cell of a table: without its full stop, and no bar of its own."""
     return sentence.removesuffix(".").replace("|", "\\|")
+
+
+def _values(words: Words) -> str:
+    """The words of one key, explained unless they have a table of their own."""
+    explained = {} if words.table else meanings(*words.enums)
+    every = dict.fromkeys(str(word) for enum in words.enums for word in enum)
+    plain = ", ".join(f"`{word}`" for word in every if word not in explained)
+    senses = " ".join(f"`{word}`: {_inner(m)}." for word, m in explained.items())
+    return ". ".join(part for part in (plain, senses) if part)
 
 
 def filled(text: str, rules: Iterable[Rule]) -> str:
@@ -136,20 +140,16 @@ def filled(text: str, rules: Iterable[Rule]) -> str:
     return _TABLE.sub(lambda place: f"{place[1]}{now[place[2]]}", text)
 
 
-def schema_text() -> str:
-    """The file that holds the JSON Schema."""
-    return _indented(output_schema())
-
-
-def _indented(schema: Mapping[str, Any]) -> str:
-    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
+def schema_text(schema: Mapping[str, Any] | None = None) -> str:
+    """The file that holds a JSON Schema, by default that of the documents."""
+    return json.dumps(schema or output_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
 def write_docs(docs: Path, rules: Iterable[Rule]) -> None:
     """Write both JSON Schemas and the tables of words and rules into the folder of the docs."""
     rules = tuple(rules)
     (docs / SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
-    (docs / CASE_SCHEMA_FILE).write_text(_indented(case_schema()), encoding="utf-8")
+    (docs / CASE_SCHEMA_FILE).write_text(schema_text(case_schema()), encoding="utf-8")
     for file in sorted(docs.rglob("*.md")):
         text = file.read_text(encoding="utf-8")
         now = filled(text, rules)

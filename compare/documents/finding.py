@@ -23,22 +23,13 @@ def _evidence(data: dict[str, Any]) -> Evidence:
     return Evidence.BEST_KNOWN if isinstance(data.get("lower"), Why) else Evidence.CERTIFIED
 
 
-_OPENING_WORDS = 60
-"""Words of the opening of a reason: a verdict and its numbers have room."""
 UNDECIDED = Why("it decides nothing")
 """Why a finding that is not checkable has no confidence."""
 
 
-_DIGITS_ALONE = (Basis.DIGITS, Basis.COUNT, Basis.IDENTITY, Basis.TEXT)
-"""What needs no curve and no motion: under no reading in particular, digits alone decide."""
-
-
 def _severity(data: dict[str, Any]) -> Severity:
     """What a verdict weighs, unless its rule says otherwise."""
-    weights = {
-        ClaimVerdict.REFUTED: Severity.ERROR,
-        ClaimVerdict.INCONSISTENT: Severity.WARNING,
-    }
+    weights = {ClaimVerdict.REFUTED: Severity.ERROR, ClaimVerdict.INCONSISTENT: Severity.WARNING}
     return weights.get(data["verdict"], Severity.INFO)
 
 
@@ -54,7 +45,9 @@ def _confidence(data: dict[str, Any]) -> Confidence | Why:
         return Confidence.UNCONVERGED
     if data.get("basis") is Basis.COMPUTED:
         return Confidence.COMPUTED
-    own = data.get("reading") is None and data.get("basis") in _DIGITS_ALONE
+    # What needs no curve and no motion: under no reading in particular, digits alone decide.
+    digits_alone = (Basis.DIGITS, Basis.COUNT, Basis.IDENTITY, Basis.TEXT)
+    own = data.get("reading") is None and data.get("basis") in digits_alone
     return Confidence.DIGITS if own else Confidence.PROVEN
 
 
@@ -69,7 +62,8 @@ def _whole(data: dict[str, Any]) -> str:
 
 
 def _opening(data: dict[str, Any]) -> str | None:
-    shown, rest = opened(data["sentences"], _OPENING_WORDS)
+    # Words of the opening of a reason: a verdict and its numbers have room.
+    shown, rest = opened(data["sentences"], 60)
     return " ".join(shown) if rest else None
 
 
@@ -82,6 +76,11 @@ class Reference(Entry):
     """Certified lower bound on the optimum, s."""
     evidence: Evidence = Field(default_factory=_evidence)
     """Certified if there is a lower bound, else best known; of a solution, that of its search."""
+
+    @property
+    def width(self) -> float | None:
+        """How far the optimum may lie below the best known value; None if nothing is certified."""
+        return None if isinstance(self.lower, Why) else 1 - self.lower / self.upper
 
 
 def percent_ends(low: float, high: float) -> tuple[str, str]:

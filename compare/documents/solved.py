@@ -13,8 +13,6 @@ from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
 from .vocabulary import Limited
 
-NO_OTHER_ROUTE = "no second route handles this curve with this many durations"
-"""Why a total stands by itself: descents take few durations, all of them determined."""
 NOT_ASKED = "not asked for"
 """Why a path is not retimed, where nobody wanted it."""
 
@@ -180,6 +178,7 @@ def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
     none = boundless or none
     there = answer.found and boundless is None
     toppra, extrapolated = _toppra(path)
+    alone = "no second route handles this curve with this many durations"
     return Answer.of(
         answer,
         status_why=boundless or answer.why,
@@ -194,9 +193,7 @@ def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
         max_violation=answer.check.max_violation if there and answer.check else Why(none),
         kkt_residual=known(answer.kkt_residual if there else None, none),
         route=known(answer.route if there else None, none),
-        other_route_total=known(
-            answer.other_total if there else None, NO_OTHER_ROUTE if there else none
-        ),
+        other_route_total=known(answer.other_total if there else None, alone if there else none),
         active=tuple(map(_active, answer.active)),
         toppra=toppra,
         toppra_extrapolated=extrapolated,
@@ -254,9 +251,7 @@ def _active(active: Active) -> ActiveLimit:
     return ActiveLimit.of(active, time=known(active.time, "a bound on the whole duration"))
 
 
-def _toppra(
-    retiming: Retiming | str,
-) -> tuple[tuple[RetimedPath, ...] | Why, Extrapolated | None]:
+def _toppra(retiming: Retiming | str) -> tuple[tuple[RetimedPath, ...] | Why, Extrapolated | None]:
     if isinstance(retiming, str):
         return Why(retiming), None
     if not retiming.applicable:

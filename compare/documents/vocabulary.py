@@ -61,6 +61,10 @@ class ClaimVerdict(StrEnum):
     reading."""
 
 
+AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
+"""Verdicts that speak against a claim, the gravest first."""
+
+
 class Scope(StrEnum):
     """Under how many admissible readings of the text the verdict holds.
 

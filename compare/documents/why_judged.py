@@ -77,11 +77,15 @@ def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
             # What names more things has more sentences.
             key = one.verdict, one.rule, one.kind, len(one.sentences)
             alike = texts.setdefault(key, {})
-            where = computed if one.reading is None else (one.reading,)
-            alike.setdefault(one.sentences, {}).update(dict.fromkeys(where))
-    # The default reading is the first of those under which it holds.
+            own = computed if one.reading is None else (one.reading,)
+            alike.setdefault(one.sentences, {}).update(dict.fromkeys(own))
+
+    def where(readings: Iterable[str]) -> tuple[str, ...]:
+        """Readings in their order, the default one in front."""
+        return tuple(sorted(readings, key=lambda reading: reading != named.default))
+
     found = [
-        Reason(verdict, rule, tuple((text, _first(named.default, alike[text])) for text in group))
+        Reason(verdict, rule, tuple((text, where(alike[text])) for text in group))
         for (verdict, rule, *_), alike in texts.items()
         for group in _disjoint(alike, named.default)
     ]
@@ -94,11 +98,6 @@ def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
             all(reading in named.implausible for reading in r.readings),
         ),
     )
-
-
-def _first(default: str, readings: Iterable[str]) -> tuple[str, ...]:
-    """Readings in their order, the default one in front."""
-    return tuple(sorted(readings, key=lambda reading: reading != default))
 
 
 def _disjoint(
@@ -152,11 +151,11 @@ def in_full(
     one: Reason, computed: Sequence[str], named: Named = NAMELESS, *, word: bool = False
 ) -> list[str]:
     """Every text of a reason with all its readings named; nothing is left out."""
-    return [
-        f"{capital(_worded(one, where, computed, word))}: {' '.join(sentences)}"
-        for sentences, readings in one.each
-        for where in (under(readings, computed, named, most=len(computed)),)
-    ]
+    found = []
+    for sentences, readings in one.each:
+        where = under(readings, computed, named, most=len(computed))
+        found.append(f"{capital(_worded(one, where, computed, word))}: {' '.join(sentences)}")
+    return found
 
 
 def opened(sentences: tuple[str, ...], words: int) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -18,18 +18,6 @@ from ..audits import AuditReport, CaseAudit, certificate_files
 from ..documents import Provenance, Why
 from .writer import report_files
 
-_FORMATS = {
-    ".html": "text/html",
-    ".json": "application/json",
-    ".md": "text/markdown",
-    ".svg": "image/svg+xml",
-    ".toml": "application/toml",
-    ".txt": "text/plain",
-}
-"""Media type of each kind of file, as the crate states it."""
-_PROFILE = "https://w3id.org/ro/wfrun/process/0.5"
-"""The profile of crates that tell which process made which files from which."""
-
 
 def crate_library() -> Any:
     """The class that writes crates."""
@@ -53,7 +41,8 @@ def crate_of(report: AuditReport) -> bytes:
     crate.name = f"Audit of {', '.join(one.case.id for one in report.cases)}"
     crate.description = "Published claims about robot trajectories, audited by trajgap"
     crate.datePublished = max(one.date for one in made)
-    crate.root_dataset["conformsTo"] = {"@id": _PROFILE}
+    # The profile of crates that tell which process made which files from which.
+    crate.root_dataset["conformsTo"] = {"@id": "https://w3id.org/ro/wfrun/process/0.5"}
     with TemporaryDirectory(prefix="trajgap-") as name:
         folder = Path(name)
         inputs = _add(crate, folder, dict(_cases(report)), "case file")
@@ -74,10 +63,18 @@ def _add(crate: Any, folder: Path, texts: dict[str, str], what: str) -> list[Any
         file = folder / path
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(text.encode())
+        formats = {
+            ".html": "text/html",
+            ".json": "application/json",
+            ".md": "text/markdown",
+            ".svg": "image/svg+xml",
+            ".toml": "application/toml",
+            ".txt": "text/plain",
+        }
         properties = {
             "name": Path(path).name,
             "description": what,
-            "encodingFormat": _FORMATS[file.suffix],
+            "encodingFormat": formats[file.suffix],
             "contentSize": str(len(text.encode())),
             "sha256": sha256(text.encode()).hexdigest(),
         }
@@ -87,16 +84,15 @@ def _add(crate: Any, folder: Path, texts: dict[str, str], what: str) -> list[Any
 
 def _cases(report: AuditReport) -> Iterator[tuple[str, str]]:
     for one in report.cases:
-        if one.case.sha256 is None:
+        case = one.case
+        if case.sha256 is None:
             raise TrajgapError(
-                f"{one.case.id}: was not read from a file, but a crate contains case files"
+                f"{case.id}: was not read from a file, but a crate contains case files"
             )
-        text, digest = PUBLISHED.hashed(one.case.file)
-        if digest != one.case.sha256:
-            raise TrajgapError(
-                f"{one.case.file}: has changed since the audit began; audit it again"
-            )
-        yield f"cases/{file_name(one.case.id)}.toml", text
+        text, digest = PUBLISHED.hashed(case.file)
+        if digest != case.sha256:
+            raise TrajgapError(f"{case.file}: has changed since the audit began; audit it again")
+        yield f"cases/{file_name(case.id)}.toml", text
 
 
 def _certificates(report: AuditReport) -> Iterator[tuple[str, str]]:
@@ -123,20 +119,12 @@ def _environment() -> Iterator[tuple[str, str]]:
 
 
 def _tell(
-    crate: Any,
-    report: AuditReport,
-    made: list[Provenance],
-    inputs: list[Any],
-    results: list[Any],
+    crate: Any, report: AuditReport, made: list[Provenance], inputs: list[Any], results: list[Any]
 ) -> None:
     """State which software made the report, from what, and which papers it is about."""
-    first = made[0]
-    software = {
-        "@id": "#trajgap",
-        "@type": "SoftwareApplication",
-        "name": "trajgap",
-        "softwareVersion": first.trajgap,
-    }
+    first, ended = made[0], crate.datePublished
+    software = {"@id": "#trajgap", "@type": "SoftwareApplication", "name": "trajgap"}
+    software["softwareVersion"] = first.trajgap
     if not isinstance(first.commit, Why):
         software["identifier"] = first.commit
     instrument = crate.add_jsonld(software)
@@ -147,9 +135,7 @@ def _tell(
             "@type": "CreateAction",
             "name": "Audit",
             "description": "; ".join(one.command for one in made),
-            "endTime": crate.datePublished.isoformat()
-            if hasattr(crate.datePublished, "isoformat")
-            else str(crate.datePublished),
+            "endTime": ended.isoformat() if hasattr(ended, "isoformat") else str(ended),
             "actionStatus": "http://schema.org/CompletedActionStatus",
         }
     )

@@ -1,20 +1,23 @@
-"""Further pictures of a report page: workspace, control polygon, velocity jumps, tent map."""
+"""Further pictures of a page: workspace, control polygon, jumps, tent map, other instances."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
-from ...problem import Array, TrajgapError, file_name, forward_kinematics, shown_bound, to_si
+from ...problem import Array, Case, TrajgapError, forward_kinematics, shown_bound, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
-from ..audits import PrintedRow, Study, place
-from ..audits.rules import has_vertices, vertices
-from ..blocks import Block, Folded, Section, table
+from ..audits import CaseAudit, PrintedRow, Study, place
+from ..audits.instances import STARTS, InstancesResult, examinable, examined, percent_range
+from ..audits.rules import HANDLED, attributed, has_vertices, placed, vertices
+from ..blocks import Block, Folded, Grid, Prose, Section, Terms, table
+from ..documents import Effect, ExaminedInstances, Procedure, Why
 from ..pictures import (
+    drawn,
+    instances_picture,
     jump_picture,
     polygon_picture,
     tent_picture,
@@ -22,22 +25,16 @@ from ..pictures import (
     velocity_jumps,
     workspace_picture,
 )
-from .motions_shown import alike, drawn, whole_rows
-from .numbers import noted, only_under
-from .units import both_units, paper_units
-
-_SAMPLES = 20_000
-"""Positions of the workspace that its bounding box is taken from, as by default in case files."""
-_SEED = 0
-"""Of the sampled positions, so every page shows the same."""
-_NEGLIGIBLE = 1e-9
-"""Distance that float arithmetic alone could leave, m."""
+from .motions_shown import alike, whole_rows
+from .numbers import both_units, noted, only_under, paper_units
 
 
 def exhibits_of_motion(study: Study) -> list[Section]:
     """Sections with workspace, control polygon and jumps; absent where there is none."""
+    printed = (rows for pair in study.main_pairs for rows in alike(whole_rows(study, pair)))
+    jumps = tuple(block for rows in printed for block in _jumps_of(study, rows))
     sections = (
-        Section("jumps", "Jumps of the velocity", tuple(_jumps(study)), folded=True),
+        Section("jumps", "Jumps of the velocity", jumps, folded=True),
         Section("control-polygon", "Control polygon", tuple(_polygons(study)), folded=True),
         Section("workspace", "Workspace of the robot", tuple(_workspaces(study)), folded=True),
     )
@@ -51,18 +48,10 @@ def exhibits_of_search(study: Study) -> list[Section]:
     return [Section("tent-map", title, blocks, folded=True)] if blocks else []
 
 
-# --- jumps ----------------------------------------------------------------------------------------
-
-
-def _jumps(study: Study) -> Iterator[Block]:
-    for pair in study.main_pairs:
-        for rows in alike(whole_rows(study, pair)):
-            yield from _jumps_of(study, pair.problem, [row.claim for row in rows])
-
-
 def _jumps_of(
-    study: Study, problem: str, claims: list[DurationsClaim | MaximumClaim]
+    study: Study, printed: list[PrintedRow[DurationsClaim | MaximumClaim]]
 ) -> Iterator[Block]:
+    problem, claims = printed[0].problem, [row.claim for row in printed]
     first = claims[0]
     rows = [PrintedRow(study, first, pair) for pair in study.pairs if pair.problem == problem]
     moved = [row for row in rows if row.unmoved is None]
@@ -72,42 +61,22 @@ def _jumps_of(
     row = jumping[0]
     statement, posed, durations = row.statement, study.problem(row.pair), row.durations.value
     names = "; ".join(dict.fromkeys(place(c) for c in claims))
-    picture = jump_picture(
-        posed,
-        durations,
-        title=f"Jumps of the velocity with the printed durations of {names}",
-        units=paper_units(statement),
-    )
+    title = f"Jumps of the velocity with the printed durations of {names}"
+    picture = jump_picture(posed, durations, title=title, units=paper_units(statement))
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
         f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
         f"{len(moved)} readings. Limits are judged inside the segments, separately from jumps."
     )
-    yield drawn(file_name("jumps", problem, first.id), picture, caption)
-    grid = tuple(
-        (
-            jump.joint,
-            jump.break_index,
-            f"{jump.time:.3f} s",
-            (
-                both_units(
-                    statement,
-                    "velocity",
-                    [jump.size],
-                    "+.6g",
-                    [statement.labels.index(jump.joint)],
-                )
-            ),
-        )
-        for jump in velocity_jumps(posed, durations)
-    )
+    yield drawn(picture, "jumps", problem, first.id, caption=caption)
+    grid = []
+    for jump in velocity_jumps(posed, durations):
+        joint = [statement.labels.index(jump.joint)]
+        size = both_units(statement, "velocity", [jump.size], "+.6g", joint)
+        grid.append((jump.joint, jump.break_index, f"{jump.time:.3f} s", size))
     columns = ("joint", ">break", ">time", ">velocity after less before")
-    yield Folded(
-        f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}", (table(columns, grid),)
-    )
-
-
-# --- control polygon ------------------------------------------------------------------------------
+    head = f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}"
+    yield Folded(head, (table(columns, grid),))
 
 
 def _polygons(study: Study) -> Iterator[Block]:
@@ -132,20 +101,11 @@ def _polygons(study: Study) -> Iterator[Block]:
             f"of both explains. No reading enters: {both} printed in one unit, and time is not "
             "involved."
         )
-        yield drawn(file_name("polygon", claim.id), picture, caption)
+        yield drawn(picture, "polygon", claim.id, caption=caption)
 
 
-# --- workspace ------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class _Path:
-    """Way-points in the base, m, with names, marks for those out of reach, and what to say."""
-
-    points: Array
-    labels: tuple[str, ...]
-    missed: tuple[bool, ...]
-    said: str
+_Path = tuple[Array, tuple[str, ...], tuple[bool, ...], str]
+"""Way-points in the base, m, with names, marks for those out of reach, and what to say."""
 
 
 def _workspaces(study: Study) -> Iterator[Block]:
@@ -157,29 +117,24 @@ def _workspaces(study: Study) -> Iterator[Block]:
     chain = study.case.chain()
     assert chain is not None
     try:
-        cloud = sample_workspace(chain, _SAMPLES, _SEED)
+        # Positions of the workspace that its bounding box is taken from, as by default in case
+        # files.
+        cloud = sample_workspace(chain, 20_000, 0)
     except TrajgapError:
         # A joint that slides without bounds has no workspace to sample.
         return
     path = _printed_path(study, dh, chain) or _joint_path(study, chain)
-    picture = workspace_picture(
-        cloud,
-        waypoints=path.points if path else None,
-        labels=path.labels if path else (),
-        missed=path.missed if path else (),
-        title=f"Workspace of {chain.name}",
-    )
-    ranges = (
-        "their ranges"
-        if np.isfinite(chain.upper - chain.lower).all()
-        else "their ranges, or one turn if none is printed"
-    )
-    caption = (
-        f"{dh.where or 'The table'}, {chain.convention} convention. Joints uniform in {ranges}."
-    )
+    points, labels, missed, said = path or (None, (), (), "")
+    title = f"Workspace of {chain.name}"
+    picture = workspace_picture(cloud, waypoints=points, labels=labels, missed=missed, title=title)
+    ranges = "their ranges"
+    if not np.isfinite(chain.upper - chain.lower).all():
+        ranges += ", or one turn if none is printed"
+    where = dh.where or "The table"
+    caption = f"{where}, {chain.convention} convention. Joints uniform in {ranges}."
     if dh.alpha_signs == "uncertain":
         caption += " Twists have their printed signs; the text may have lost some of them."
-    yield drawn("workspace", picture, caption + (f" {path.said}" if path else ""))
+    yield drawn(picture, "workspace", caption=f"{caption} {said}".strip())
 
 
 def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
@@ -190,7 +145,8 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
     measured = [[to_si(number, place.unit) for number in place.values] for place in places]
     points = np.array([[m.value for m in row] for row in measured])
     halves = np.array([[(m.upper - m.lower) / 2 for m in row] for row in measured])
-    slack = dh.rounding(chain) + np.linalg.norm(halves, axis=1) + _NEGLIGIBLE
+    # Distance that float arithmetic alone could leave, m.
+    slack = dh.rounding(chain) + np.linalg.norm(halves, axis=1) + 1e-9
     free = np.full(chain.joints, np.nan)
     near = [proximity(chain, point, free) for point in points]
     names = tuple(place.label or place.id for place in places)
@@ -212,7 +168,7 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
             if reached
             else "None is shown to be out of reach."
         )
-    return _Path(points, names, missed, said)
+    return points, names, missed, said
 
 
 def _joint_path(study: Study, chain: Chain) -> _Path | None:
@@ -237,22 +193,19 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
             f"lies outside the range of this table, {chain.lower[j]:.4f} to {chain.upper[j]:.4f} "
             "rad, so the text may measure its angles from another zero."
         )
-        return _Path(np.empty((0, 3)), (), (), said)
+        return np.empty((0, 3)), (), (), said
     points = np.asarray(forward_kinematics(chain, q)[..., :3, 3])
     said = f"Way-points by forward kinematics.{noted(study, study.main_reading)}"
-    return _Path(points, tuple(labels or ()), (), said)
-
-
-# --- tent map -------------------------------------------------------------------------------------
+    return points, tuple(labels or ()), (), said
 
 
 def _tents(study: Study) -> Iterator[Block]:
-    segments = [
+    counts = (
         study.case.statement(pid, rid).waypoints.number - 1
         for pid in dict.fromkeys(p for p, _ in study.case.selections())
         for rid in study.readings[:1]
-    ]
-    dimensions = next((n for n in segments if n > 1), None)
+    )
+    dimensions = next((n for n in counts if n > 1), None)
     if dimensions is None:
         return
     for block in study.case.algorithms:
@@ -260,11 +213,8 @@ def _tents(study: Study) -> Iterator[Block]:
         if not isinstance(built, ImprovedWOA) or built.initial is not InitialRule.TENT:
             continue
         scatter = tent_scatter(built.whales, dimensions, built.position_initial, built.beta)
-        picture = tent_picture(
-            scatter,
-            unit="s",
-            title=f"Initial population of {built.whales} times {dimensions} durations, tent map",
-        )
+        title = f"Initial population of {built.whales} times {dimensions} durations, tent map"
+        picture = tent_picture(scatter, unit="s", title=title)
         printed = "as printed" if "tent_rule" in block.settings else "left open by the text"
         low, high = built.position_initial
         caption = (
@@ -272,23 +222,147 @@ def _tents(study: Study) -> Iterator[Block]:
             f"{high:g} s; first two durations of every member. How orbits fill the population is "
             f"{printed}; the listed choice is “{built.tent_rule}”."
         )
-        yield drawn(file_name("tent", block.id), picture, caption)
+        yield drawn(picture, "tent", block.id, caption=caption)
         lengths = {
             TentRule.COORDINATE: built.whales,
             TentRule.MEMBER: dimensions,
             TentRule.SINGLE: built.whales * dimensions,
         }
-        rows = tuple(
+        rows = [
             (
-                (f"{rule}" + (" (listed choice)" if rule is built.tent_rule else "")),
+                f"{rule} (listed choice)" if rule is built.tent_rule else str(rule),
                 lengths[rule],
                 f"{scatter.collapsed[rule]} of {built.whales}",
             )
             for rule in TentRule
-        )
-        columns = (
-            "orbits by",
-            ">points of an orbit",
-            ">members with a duration of exactly 0 (seed 0)",
-        )
+        ]
+        zero = ">members with a duration of exactly 0 (seed 0)"
+        columns = ("orbits by", ">points of an orbit", zero)
         yield table(columns, rows)
+
+
+def other_instances(one: CaseAudit) -> tuple[Section, ...]:
+    """One section if the case says which instances to draw, none otherwise."""
+    blocks: list[Block] = []
+    for declared, entry in zip(examinable(one.study), one.document.families, strict=True):
+        blocks += _examined(one.study, examined(one.study, declared), entry)
+    if not blocks:
+        return ()
+    title = "The comparison on other instances"
+    return (Section("families", title, tuple(blocks), folded=True),)
+
+
+def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -> list[Block]:
+    block = result.block
+    stands = place(study.case.claim(block.claim))
+    title = f"Reduction of the total, {stands}, on {result.instances} instances"
+    picture = instances_picture(result, title=title)
+    caption = (
+        "Every pair of one run of each, and every pair of optima; strokes are medians. Instances "
+        "are drawn from the robot's workspace and are not the paper's."
+    )
+    by_step = tuple(
+        table(_COLUMNS, _rows(entry, result, step), f"Steps of {step:g} {block.unit}")
+        for step in block.lengths
+    )
+    return [
+        *(Prose(said) for said in (placed(result), " ".join(attributed(result))) if said),
+        Prose(
+            "The instances are not the paper's: they are information and decide nothing, and the "
+            "absolute times remain not checkable.",
+            "note",
+        ),
+        Terms(_design(study, result)),
+        drawn(picture, "family", block.id, caption=caption),
+        table(_COLUMNS, _rows(entry, result, None), "Reductions of the total, in %"),
+        Folded("Reductions by step length", by_step),
+        Folded(f"Totals of every instance, {stands}", (_instances(entry, result.labels),)),
+    ]
+
+
+def _design(study: Study, result: InstancesResult) -> tuple[tuple[str, str], ...]:
+    block, slow, fast = result.block, result.slower, result.faster
+    points = result.samples[0].waypoints
+    steps = ", ".join(f"{step:g}" for step in block.lengths)
+    kind = "largest change of any joint" if block.kind == "joint" else "path of the end"
+    objectives = "; ".join(f"{name}: {HANDLED[name]}" for name in block.objectives)
+    pairs = [
+        ("compared", f"the faster one, {_procedure(study.case, fast)}, against the slower one, "
+         f"{_procedure(study.case, slow)}, both with the settings and the choices of the case "
+         "file"),
+        ("printed", "no reduction" if result.printed is None else
+         f"{percent_range(*result.printed)} less"),
+        ("instances", f"{block.instances} for each step of {steps} {block.unit} ({kind}), "
+         f"{len(points)} way-points each, from {block.samples} positions of the workspace of "
+         f"{study.case.robot.name}, seed {block.seed}"),
+        ("why these", block.why),
+        ("runs", f"{block.runs} of each algorithm on each instance, seeds 0 to {block.runs - 1}"),
+        ("optima", f"best known, {STARTS} starts of each solve; "
+         f"{len(result.unsolved) or 'none'} of {2 * len(result.samples)} unknown"
+         + "".join(f"; {line}" for line in result.unsolved)),
+        ("objectives", objectives),
+    ]  # fmt: skip
+    return tuple(pairs)
+
+
+def _procedure(case: Case, one: Procedure) -> str:
+    """An algorithm on a problem, by their names."""
+    names = {block.id: block.name for block in case.algorithms}
+    called = next((p.title for p in case.problems if p.id == one.problem), "") or one.problem
+    return f"{names[one.algorithm]} (“{called}”)"
+
+
+_COLUMNS = ("reading", "due to", ">pairs", ">least", ">quarter", ">median", ">three quarters",
+            ">most", ">shorter", ">as printed or more")  # fmt: skip
+"""Columns of the reductions."""
+
+
+def _rows(
+    entry: ExaminedInstances, result: InstancesResult, step: float | None
+) -> list[tuple[object, ...]]:
+    rows: list[tuple[object, ...]] = []
+    for one in (found for found in entry.reductions if found.step == step):
+        reached = None
+        if result.printed is not None and one.effect is Effect.BOTH and one.objective is not None:
+            at = result.block.objectives.index(one.objective)
+            values = result.reductions(one.reading, one.effect, at, one.step)
+            good = values[np.isfinite(values)]
+            if good.size:
+                reached = f"{100 * float((good >= result.printed[0]).mean()):.3g} %"
+        quantiles = (one.lowest, one.lower_quarter, one.median, one.upper_quarter, one.highest)
+        rows.append(
+            (
+                result.label(one.reading),
+                one.effect + (f", {one.objective}" if one.objective else ""),
+                f"{one.pairs}" + (f"\n{one.missing} without answer" if one.missing else ""),
+                *(None if isinstance(x, Why) else f"{100 * x:.1f}" for x in quantiles),
+                None if isinstance(one.shorter, Why) else f"{100 * one.shorter:.3g} %",
+                reached,
+            )
+        )
+    return rows
+
+
+def _instances(entry: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
+    routes = ("slower", "slower algorithm on the faster curve", "faster")
+    rows = []
+    for one in entry.instances:
+        for own in one.readings:
+            cells = [labels.get(own.reading, own.reading), f"{one.step:g}", one.instance + 1]
+            for optimum in (own.slower_optimum, own.faster_optimum):
+                total = optimum.total_time
+                cells.append(optimum.status if isinstance(total, Why) else f"{total:.4f}")
+            for runs in own.totals:
+                for totals in (runs.slower, runs.slower_algorithm_on_faster_curve, runs.faster):
+                    said = ("none" if t is None else f"{t:.3f}" for t in totals)
+                    cells.append("\n".join(said))
+            rows.append(tuple(cells))
+    names = (
+        "reading",
+        f">step, {entry.unit}",
+        ">instance",
+        ">optimum of the slower curve",
+        ">optimum of the faster curve",
+        *(f">{route}, {objective}" for objective in entry.objectives for route in routes),
+    )
+    return table(names, tuple(rows), "Totals in s, one line for each run")

@@ -50,7 +50,9 @@ def _writing(out: Path, option: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(
-            str(out), option, f"cannot be written ({reason}); give another place"
-        ) from None
+        raise CaseError(str(out), option, unwritable(error, "give another place")) from None
+
+
+def unwritable(error: OSError, advice: str = "give a writable place") -> str:
+    """What a message says of a place that the system refuses to write to."""
+    return f"cannot be written ({error.strerror or type(error).__name__}); {advice}"

@@ -22,9 +22,6 @@ from ..documents import (
     meanings,
 )
 
-SCOPES = f"{', '.join(Scope)} readings"
-"""The term that explains how many readings agree."""
-
 
 def word_groups() -> Iterator[tuple[str, dict[str, str]]]:
     """What the words of a report are said of, and each word with its meaning.
@@ -32,11 +29,8 @@ def word_groups() -> Iterator[tuple[str, dict[str, str]]]:
     A word of two enumerations is explained once, by the first.
     """
     groups: tuple[tuple[str, Mapping[str, str]], ...] = (
-        ("On a claim", meanings(ClaimVerdict) | {SCOPES: meaning(Scope)}),
-        (
-            "On printed durations",
-            meanings(Rounding),
-        ),
+        ("On a claim", meanings(ClaimVerdict) | {f"{', '.join(Scope)} readings": meaning(Scope)}),
+        ("On printed durations", meanings(Rounding)),
         ("On one motion", meanings(Verdict)),
         ("On a reference value", meanings(Evidence)),
         ("On a distance", meanings(GapKind) | TIMES),

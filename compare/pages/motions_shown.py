@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 
 import numpy as np
 
 from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
-from ...problem import Array, Problem, TrajgapError, file_name
+from ...problem import Array, Problem, TrajgapError
 from ...problem.cases import DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, planned_apart
 from ..blocks import Block, Drawn, Folded, Prose, Section, table
 from ..documents import OWN_OPTIMA
-from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
-from .numbers import REPLAY_COLUMNS, noted, problem_name, replay_rows
-from .units import paper_units
+from ..pictures import Runs, convergence, drawn, endings, landscape, motion_picture
+from .numbers import REPLAY_COLUMNS, noted, paper_units, problem_name, replay_rows
 
 _Row = PrintedRow[DurationsClaim | MaximumClaim]
 """A row that prints durations."""
@@ -28,34 +28,20 @@ def motions(one: CaseAudit) -> Section:
         blocks += _printed_motions(one.study, pair)
         solution = one.study.optimum(pair)
         if solution.found and solution.boundless is None:
-            title = f"{_optimum_of(one, pair.problem, solution)}: {solution.total_time:.6f} s"
+            known = f"{solution.evidence.capitalize()} optimum{at_ratios(solution.problem)}"
+            if len(one.case.problems) > 1:
+                known += f", {problem_name(one, pair.problem)}"
             picture = motion_picture(
                 solution.problem,
                 solution.durations,
-                title=title,
+                title=f"{known}: {solution.total_time:.6f} s",
                 check=solution.check,
                 nodal=solution.nodal,
                 units=paper_units(one.study.case.statement(*pair)),
             )
-            blocks.append(
-                drawn(
-                    file_name("optimum", pair.problem),
-                    picture,
-                    noted(one.study, pair.reading).strip(),
-                )
-            )
+            caption = noted(one.study, pair.reading).strip()
+            blocks.append(drawn(picture, "optimum", pair.problem, caption=caption))
     return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
-
-
-def _optimum_of(one: CaseAudit, pid: str, solution: Solution) -> str:
-    """What the optimum of a problem is called, and the problem where there are several."""
-    known = f"{solution.evidence.capitalize()} optimum{at_ratios(solution.problem)}"
-    return known + (f", {problem_name(one, pid)}" if len(one.case.problems) > 1 else "")
-
-
-def drawn(name: str, picture: Picture, caption: str) -> Drawn:
-    """A picture with its title, under a name that is unique in the page."""
-    return Drawn(name, svg(picture), picture.title, caption)
 
 
 def whole_rows(study: Study, pair: Pair) -> list[_Row]:
@@ -83,12 +69,9 @@ def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
     for rows in alike(whole_rows(study, pair)):
         row = rows[0]
         title = f"Printed durations: {'; '.join(dict.fromkeys(place(r.claim) for r in rows))}"
-        unmoved = row.unmoved
-        if unmoved is not None:
-            yield Prose(f"{title} are not drawn: {unmoved}.{under}", "note")
-            continue
-        if not row.has_curve:
-            yield Prose(f"{title} define no curve.{under}", "note")
+        if row.unmoved is not None or not row.has_curve:
+            why = "define no curve" if row.unmoved is None else f"are not drawn: {row.unmoved}"
+            yield Prose(f"{title} {why}.{under}", "note")
             continue
         picture = motion_picture(
             study.problem(pair),
@@ -98,8 +81,8 @@ def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
             note=f"however the digits were rounded: {row.rounding.verdict}",
             units=paper_units(row.statement),
         )
-        where = "; ".join(r.claim.where for r in rows)
-        yield drawn(file_name("motion", row.problem, row.claim.id), picture, f"{where}.{under}")
+        caption = f"{'; '.join(r.claim.where for r in rows)}.{under}"
+        yield drawn(picture, "motion", row.problem, row.claim.id, caption=caption)
     for tables, singles in _tables_by_joint(study, pair):
         if singles[0].unmoved is None:
             yield _joint_by_joint(tables, singles)
@@ -125,14 +108,13 @@ def _tables_by_joint(study: Study, pair: Pair) -> list[tuple[str, list[_Row]]]:
 
 
 def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
-    study, pair, first = rows[0].study, rows[0].pair, rows[0].claim
+    study, pair = rows[0].study, rows[0].pair
     verdicts = [str(row.rounding.verdict) for row in rows]
-    words = ", ".join(dict.fromkeys(verdicts))
     picture = motion_picture(
         study.problem(pair),
         np.array([row.durations.value for row in rows]),
         title=f"Printed durations of each joint separately: {tables}",
-        note=f"however the digits were rounded: {words}",
+        note=f"however the digits were rounded: {', '.join(dict.fromkeys(verdicts))}",
         units=paper_units(study.case.statement(*pair)),
     )
     each = "; ".join(f"joint {r.claim.joint}: {v}" for r, v in zip(rows, verdicts, strict=True))
@@ -140,10 +122,8 @@ def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
         "Each joint with its own durations, at the printed digits. However the digits were "
         f"rounded: {each}.{noted(study, pair.reading)}"
     )
-    return drawn(file_name("motion", pair.problem, "joints", str(first.table)), picture, caption)
-
-
-# --- searches -------------------------------------------------------------------------------------
+    name = "motion", pair.problem, "joints", str(rows[0].claim.table)
+    return drawn(picture, *name, caption=caption)
 
 
 def searches(one: CaseAudit) -> Section:
@@ -157,16 +137,10 @@ def searches(one: CaseAudit) -> Section:
         name = problem_name(one, pair.problem)
         blocks += _convergence(study, pair, runs, name)
         references, printed = _totals(study, pair)
-        title = f"Totals of all runs: {name}"
         ends = {each: np.array([r.reported_time for r in one]) for each, one in runs.items()}
+        picture = endings(ends, references, printed, title=f"Totals of all runs: {name}")
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
-        blocks.append(
-            drawn(
-                file_name("totals", pair.problem),
-                endings(ends, references, printed, title=title),
-                caption,
-            )
-        )
+        blocks.append(drawn(picture, "totals", pair.problem, caption=caption))
         grid = table(REPLAY_COLUMNS, replay_rows(study, pair))
         blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
     last = study.options.seeds - 1
@@ -192,9 +166,8 @@ def _runs(study: Study, pair: Pair) -> dict[str, Runs]:
 def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> Iterator[Block]:
     by_joint = isinstance(next(iter(runs.values()))[0], JointRuns)
     problem = study.problem(pair)
-    solutions = [study.optimum(pair, label) for label in problem.joints] if by_joint else [
-        study.optimum(pair)
-    ]  # fmt: skip
+    searched = problem.joints if by_joint else [None]
+    solutions = [study.optimum(pair, label) for label in searched]
     if any(not s.found or not s.best > 0 for s in solutions):
         return  # there is nothing, or nothing positive, that a gap could be a share of
     printed: dict[str, list[float]] = {}
@@ -217,12 +190,11 @@ def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> 
         joints=problem.joints,
         title=f"Best total so far: {name}" + (", each joint separately" if by_joint else ""),
     )
-    yield drawn(
-        file_name("convergence", pair.problem),
-        picture,
+    caption = (
         "Gap to the optimum, linear up to 0.01 % and logarithmic beyond. The band around a printed "
-        "total is its rounding.",
+        "total is its rounding."
     )
+    yield drawn(picture, "convergence", pair.problem, caption=caption)
 
 
 def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float]]:
@@ -231,11 +203,8 @@ def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float
     if shared.found and shared.boundless is None:
         at = at_ratios(shared.problem)
         references[f"{shared.evidence} optimum, shared durations{at}"] = shared.best
-    problem = study.problem(pair)
-    if planned_apart(problem):
-        answer = study.per_joint(pair)
-        if answer.found:
-            references[OWN_OPTIMA] = answer.total_time
+    if planned_apart(study.problem(pair)) and study.per_joint(pair).found:
+        references[OWN_OPTIMA] = study.per_joint(pair).total_time
     printed: dict[str, list[str]] = {}
     values: dict[str, float] = {}
     own = [row.claim for row in whole_rows(study, pair)]
@@ -251,9 +220,6 @@ def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float
     }
 
 
-# --- landscapes -----------------------------------------------------------------------------------
-
-
 def landscapes(one: CaseAudit) -> Section:
     """Total time over the shares of three durations, for all joints and for each by itself."""
     study = one.study
@@ -263,41 +229,27 @@ def landscapes(one: CaseAudit) -> Section:
         if problem.ratios is not None:
             continue  # its ratios are one point of the map
         if problem.segments != 3:
-            blocks.append(
-                Prose(
-                    f"{name}: {problem.segments} segments; a landscape needs three.",
-                    "note",
-                )
-            )
+            said = f"{name}: {problem.segments} segments; a landscape needs three."
+            blocks.append(Prose(said, "note"))
             continue
         runs = _runs(study, pair)
         printed = [(place(row.claim), row.durations.value) for row in whole_rows(study, pair)]
         ends = {each: np.array([r.durations for r in many]) for each, many in runs.items()}
-        blocks += _landscape(
-            file_name("landscape", pair.problem),
-            problem,
-            study.optimum(pair),
-            printed,
-            ends,
-            name,
-        )
+        named = "landscape", pair.problem
+        blocks += _landscape(named, problem, study.optimum(pair), printed, ends, name)
         single: list[Drawn] = []
-        for tables, rows in _tables_by_joint(study, pair):
+        for tables, rows in _tables_by_joint(study, pair)[:1]:
             for j, row in enumerate(rows):
+                label = problem.joints[j]
                 own = {
                     each: np.array([r.runs[j].durations for r in many if isinstance(r, JointRuns)])
                     for each, many in runs.items()
                     if isinstance(many[0], JointRuns)
                 }
-                single += _landscape(
-                    file_name("landscape", pair.problem, "joint", str(j + 1)),
-                    problem.joint(j),
-                    study.optimum(pair, problem.joints[j]),
-                    [(tables, row.durations.value)],
-                    own,
-                    f"joint {problem.joints[j]}",
-                )
-            break
+                alone = problem.joint(j), study.optimum(pair, label)
+                printed = [(tables, row.durations.value)]
+                own_name = *named, "joint", str(j + 1)
+                single += _landscape(own_name, *alone, printed, own, f"joint {label}")
         if single:
             blocks.append(Folded(f"Each joint separately: {name}", tuple(single)))
     shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
@@ -305,29 +257,19 @@ def landscapes(one: CaseAudit) -> Section:
 
 
 def _landscape(
-    name: str,
+    name: tuple[str, ...],
     problem: Problem,
     optimum: Solution,
     printed: list[tuple[str, Array]],
     ends: dict[str, Array],
     what: str,
 ) -> Iterator[Drawn]:
-    alike: dict[bytes, tuple[list[str], Array]] = {}
+    same: dict[bytes, tuple[list[str], Array]] = {}
     for label, durations in printed:
-        alike.setdefault(durations.tobytes(), ([], durations))[0].append(label)
-    points = [(", ".join(labels), durations) for labels, durations in alike.values()]
-    try:
-        picture = landscape(
-            problem,
-            optimum,
-            points,
-            ends,
-            title=f"Total time over the shares of h₁ : h₂ : h₃, {what}",
-        )
-    except TrajgapError:
-        return
-    yield drawn(
-        name,
-        picture,
-        "Exact totals: durations of any shares, stretched until the first limit is reached.",
-    )
+        same.setdefault(durations.tobytes(), ([], durations))[0].append(label)
+    points = [(", ".join(labels), durations) for labels, durations in same.values()]
+    title = f"Total time over the shares of h₁ : h₂ : h₃, {what}"
+    caption = "Exact totals: durations of any shares, stretched until the first limit is reached."
+    with suppress(TrajgapError):
+        picture = landscape(problem, optimum, points, ends, title=title)
+        yield drawn(picture, *name, caption=caption)

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...nlp import PerJointSolution, Solution
-from ...problem import Case, Coupling, file_name, shown_bound
-from ...problem.cases import DurationsClaim
+from ...problem import Case, Coupling, Printed, shown_bound, shown_unit, to_si
+from ...problem.cases import DurationsClaim, Statement
 from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, routes, searched_for
 from ..blocks import (
     REACHED_MEANING,
@@ -25,12 +25,68 @@ from ..blocks import (
     table,
     word,
 )
-from ..documents import Waterfall, Why, by_search, ranged
+from ..documents import UNITS, Waterfall, Why, by_search, ranged, si_unit
 from ..gaps import gap, reference_of, spread
-from ..pictures import reached_picture, svg, waterfall_picture
+from ..pictures import drawn, reached_picture, waterfall_picture
 
-_ON_A_LINE = 2
-"""Durations on each line of a cell: nine on one would push the table off the page."""
+
+def paper_units(statement: Statement) -> dict[tuple[str, str], tuple[str, float]]:
+    """The paper's units where they are not SI, as pictures take them: as written, and in SI.
+
+    By joint and quantity.
+
+    `statement`: the problem under the reading whose units count.
+    """
+    found = {}
+    for joint in statement.joints:
+        for quantity in UNITS:
+            own = _own(statement, quantity, joint)
+            if own is not None:
+                found[statement.labels[joint], quantity] = own
+    return found
+
+
+def _own(statement: Statement, quantity: str, joint: int) -> tuple[str, float] | None:
+    """The paper's unit of a joint where it is not SI, and how much of SI one of it is."""
+    unit = statement.unit(quantity, joint)  # type: ignore[arg-type]
+    if unit is None or shown_unit(unit) == si_unit(quantity, statement.linear[joint]):
+        return None
+    return shown_unit(unit), to_si(Printed("1", exact=True), unit).value
+
+
+def both_units(
+    statement: Statement,
+    quantity: str,
+    values: Sequence[float],
+    form: str,
+    joints: Sequence[int] | None = None,
+) -> str:
+    """Values in the paper's unit of a quantity, with SI in brackets where that is another.
+
+    `quantity`: such as "velocity". `values`: in SI. `form`: format of each number, such as "+.6g".
+    `joints`: position of each value's joint in the robot's list; those that take part by default,
+    where one value may stand for all that have one unit.
+    """
+    places = list(statement.joints if joints is None else joints)
+    places = places[: len(values)]
+    if not one_unit(statement, quantity, places):
+        each = zip(values, places, strict=True)
+        return ", ".join(both_units(statement, quantity, [v], form, [j]) for v, j in each)
+    si = ", ".join(f"{v:{form}}" for v in values)
+    si += f" {si_unit(quantity, statement.linear[places[0]])}"
+    unit = _own(statement, quantity, places[0])
+    if unit is None:
+        return si
+    own = ", ".join(f"{round(v / unit[1], 10):{form}}" for v in values)
+    return f"{own} {unit[0]} ({si})"
+
+
+def one_unit(statement: Statement, quantity: str, joints: Sequence[int]) -> bool:
+    """Whether some joints have a quantity in the same unit, stated or not."""
+    found = {(statement.unit(quantity, j), statement.linear[j]) for j in joints}  # type: ignore[arg-type]
+    return len(found) == 1
+
+
 _FEW = 3
 """Other readings of a problem that still get a picture each, and searches that stand open."""
 
@@ -49,8 +105,7 @@ def card_picture(one: CaseAudit) -> Drawn | None:
     several = len({w.problem for w in one.waterfalls}) > 1
     title = "Where the time goes"
     title += f": {problem_name(one, waterfall.problem)}" if several else ""
-    picture = waterfall_picture(waterfall, title=title, narrow=True)
-    return Drawn("time", svg(picture), title, inside=True)
+    return drawn(waterfall_picture(waterfall, title=title, narrow=True), "time", inside=True)
 
 
 def where_time_goes(one: CaseAudit) -> Section:
@@ -62,15 +117,15 @@ def where_time_goes(one: CaseAudit) -> Section:
         others = [w for w in own if w.reading != main]
         for waterfall in own:
             shown = problem_name(one, pid, waterfall.reading)
-            if waterfall.reading == main:
+            own_reading = waterfall.reading == main
+            if own_reading:
                 blocks.append(distances_table(waterfall, shown).filled)
                 notes = [Prose(said, "note") for said in waterfall.without_optimum]
-                blocks += [one for one in notes if one not in blocks]
+                blocks += [note for note in notes if note not in blocks]
+            if own_reading or len(others) <= _FEW:
+                title = f"{'Picture and notes' if own_reading else 'Other reading'}: {shown}"
                 inside = _drawn(one, waterfall), steps_table(waterfall)
-                blocks.append(Folded(f"Picture and notes: {shown}", inside))
-            elif len(others) <= _FEW:
-                inside = _drawn(one, waterfall), steps_table(waterfall)
-                blocks.append(Folded(f"Other reading: {shown}", inside))
+                blocks.append(Folded(title, inside))
         if len(others) > _FEW:
             title = f"Other readings, step by step: {problem_name(one, pid)}"
             blocks.append(Folded(title, (_side_by_side(one, pid, others),)))
@@ -82,10 +137,7 @@ def reached_runs(one: CaseAudit) -> Section:
     blocks: list[Block] = []
     for at, (title, runs) in enumerate(by_search(one.reached).items()):
         picture = reached_picture(runs, one.waterfalls, title=title)
-        own = (
-            reached_table(runs, title),
-            Drawn(file_name("reached", str(at)), svg(picture), title),
-        )
+        own = reached_table(runs, title), drawn(picture, "reached", str(at))
         blocks += own if at < _FEW else [Folded(title, own)]
     if blocks:
         meaning = Folded("How to read this", (Prose(REACHED_MEANING, "note"),))
@@ -93,10 +145,14 @@ def reached_runs(one: CaseAudit) -> Section:
     return Section("reached", "How near the paper's algorithms get", tuple(blocks))
 
 
+def _called(case: Case, pid: str) -> str:
+    """What a reader calls a problem: its title."""
+    return next((p.title for p in case.problems if p.id == pid), "") or pid
+
+
 def problem_cell(case: Case, pid: str) -> str:
-    """What a table calls a problem: its title; nothing if it is the only one."""
-    title = next((p.title for p in case.problems if p.id == pid), "") or pid
-    return title if len(case.problems) > 1 else ""
+    """What a table calls a problem; nothing if it is the only one."""
+    return _called(case, pid) if len(case.problems) > 1 else ""
 
 
 def asked_cells(study: Study, pair: Pair) -> tuple[str, str]:
@@ -105,16 +161,12 @@ def asked_cells(study: Study, pair: Pair) -> tuple[str, str]:
 
 
 def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
-    """What a reader calls a problem: its title, and the reading where there are several."""
-    title = next((p.title for p in one.case.problems if p.id == pid), "") or pid
-    if not one.case.document.problems:
-        title = "The motion"  # the file names no problem, and "main" says nothing
-    under = (
-        f"; {one.case.labels.get(reading, reading)}"
-        if reading and len(one.study.readings) > 1
-        else ""
-    )
-    return f"{title}{under}"
+    """What a reader calls a problem, and the reading where there are several."""
+    # A file that names no problem has one called "main", which says nothing.
+    title = _called(one.case, pid) if one.case.document.problems else "The motion"
+    if reading is None or len(one.study.readings) == 1:
+        return title
+    return f"{title}; {one.case.labels.get(reading, reading)}"
 
 
 def only_under(study: Study, rid: str) -> str:
@@ -130,13 +182,10 @@ def noted(study: Study, rid: str) -> str:
 def _drawn(one: CaseAudit, waterfall: Waterfall) -> Drawn:
     title = f"Where the time goes: {problem_name(one, waterfall.problem, waterfall.reading)}"
     picture = waterfall_picture(waterfall, title=title)
-    caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
-        f" The first bar is printed in {place(one.case.claim(waterfall.claim))}."
-        if waterfall.claim
-        else ""
-    )
-    name = file_name("waterfall", waterfall.problem, waterfall.reading)
-    return Drawn(name, svg(picture), title, caption)
+    caption = "Bars start at 0; best known values are hatched, certified ones solid."
+    if waterfall.claim:
+        caption += f" The first bar is printed in {place(one.case.claim(waterfall.claim))}."
+    return drawn(picture, "waterfall", waterfall.problem, waterfall.reading, caption=caption)
 
 
 def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> Grid:
@@ -155,43 +204,33 @@ def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> 
     return table(("reading", *(f">{name}" for name in names)), rows, caption).filled
 
 
-# --- optima ---------------------------------------------------------------------------------------
-
-_OPTIMA = "Optimum of each formulation"
-"""Title of the section."""
-NINE = 9
-"""Nine decimals of a proved bound, as the certificates' tables have them."""
 _ANSWER = ("status", ">total", "by", "evidence", ">durations, s", "check", ">KKT residual")
 """Columns that say how a solve ended."""
-
-
-def _durations(values: list[float]) -> str:
-    """Durations, a few on each line."""
-    shown = [f"{value:.6f}" for value in values]
-    lines = [", ".join(shown[i : i + _ON_A_LINE]) for i in range(0, len(shown), _ON_A_LINE)]
-    return ",\n".join(lines)
 
 
 def _answer(solution: Solution) -> tuple[object, ...]:
     if solution.boundless is not None:
         why = f"{solution.status}\n{solution.boundless}"
         return (why, *(None for _ in _ANSWER[1:]))
-    check = solution.check
-    residual = solution.kkt_residual
+    check, residual, durations = solution.check, solution.kkt_residual, None
     total = f"{solution.total_time:.6f} s" if solution.found else None
+    if solution.found:
+        # Two on a line: nine on one would push the table off the page.
+        shown = [f"{value:.6f}" for value in solution.durations]
+        durations = ",\n".join(", ".join(shown[i : i + 2]) for i in range(0, len(shown), 2))
     if solution.infimum is not None:
         called = "infimum" if solution.approach_proved else "approached"
         total = f"{solution.infimum:.6f} s ({called})"
     if total is not None and solution.lower_bound is not None:
-        total += f"\nat least {shown_bound(solution.lower_bound, 'lower', places=NINE)} s,\nproved"
+        total += f"\nat least {shown_bound(solution.lower_bound, 'lower', places=9)} s,\nproved"
     return (
-        (solution.status + (f"\n{solution.why}" if solution.why else "")),
+        solution.status + (f"\n{solution.why}" if solution.why else ""),
         total,
-        (None if solution.route is None else "\n".join(routes(solution))),
+        None if solution.route is None else "\n".join(routes(solution)),
         word(solution.evidence),
-        (None if not solution.found else _durations(list(solution.durations))),
+        durations,
         word(check.verdict) if check is not None else None,
-        (None if residual is None else f"{residual:.1e}"),
+        None if residual is None else f"{residual:.1e}",
     )
 
 
@@ -209,10 +248,11 @@ def optima(one: CaseAudit) -> Section:
         else:
             without[relaxed.why or str(relaxed.status)].append(pair.reading)
         rows += [(*asked_cells(study, pair), name, *_answer(one)) for name, one in solved.items()]
-        if _by_joint(study, pair):
+        problem = own.problem
+        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
             blocks += _joints(study, pair)
     if not rows:
-        return Section("optima", _OPTIMA, ())
+        return Section("optima", "", ())
     notes = [
         Prose(
             f"No relaxed family for {len(found)} of {len(study.pairs)} rows above: {why}.", "note"
@@ -220,28 +260,22 @@ def optima(one: CaseAudit) -> Section:
         for why, found in without.items()
     ]
     names = ("problem", "reading", "formulation", *_ANSWER)
-    return Section("optima", _OPTIMA, (table(names, rows).filled, *notes, *blocks), folded=True)
-
-
-def _by_joint(study: Study, pair: Pair) -> bool:
-    problem = study.problem(pair)
-    return problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    shown = table(names, rows).filled, *notes, *blocks
+    return Section("optima", "Optimum of each formulation", shown, folded=True)
 
 
 def _joints(study: Study, pair: Pair) -> Iterator[Block]:
     answer = study.per_joint(pair)
     rows = []
     for label, solution in zip(answer.problem.joints, answer.joints, strict=True):
-        claims = [
-            c
-            for c in study.case.claims
-            if isinstance(c, DurationsClaim) and c.joint == label and study.fits(c, pair)
-        ]
         shown: dict[str, list[str]] = {}
         gaps = []
-        for claim in claims:
-            total = study.claim_total(claim, pair.reading)
-            reference = reference_of(solution)
+        reference = reference_of(solution)
+        for claim in study.case.claims:
+            own = isinstance(claim, DurationsClaim) and claim.joint == label
+            total = (
+                study.claim_total(claim, pair.reading) if own and study.fits(claim, pair) else None
+            )
             if total is not None and reference is not None:
                 shown.setdefault(total.shown, []).append(claim.where)
                 row = PrintedRow(study, claim, pair)
@@ -277,9 +311,6 @@ def _procedure(answer: PerJointSolution) -> str:
     return " ".join(parts)
 
 
-# --- sensitivities --------------------------------------------------------------------------------
-
-
 def sensitivities(one: CaseAudit) -> Section:
     """What 10 % more of each active limit buys, to first order."""
     title = "Effect of raising a limit by 10 %"
@@ -290,18 +321,11 @@ def sensitivities(one: CaseAudit) -> Section:
         for a in solution.active:
             where = f"joint {a.joint}" if a.joint is not None else f"segment {a.segment + 1}"
             bought[where, a.quantity].append(a.sensitivity)
-        for (where, quantity), changes in bought.items():
+        for limit, changes in bought.items():
             change = sum(changes)
-            rows.append(
-                (
-                    *asked_cells(one.study, pair),
-                    where,
-                    quantity,
-                    len(changes),
-                    f"{change:+.6f} s",
-                    f"{100 * change / solution.total_time:+.3f} %",
-                )
-            )
+            share = f"{100 * change / solution.total_time:+.3f} %"
+            asked = asked_cells(one.study, pair)
+            rows.append((*asked, *limit, len(changes), f"{change:+.6f} s", share))
     note = Prose(
         "First-order change of the total if a limit that is reached is raised by 10 %, from the "
         "multipliers of the optimum with shared durations.",
@@ -314,9 +338,6 @@ def sensitivities(one: CaseAudit) -> Section:
     return Section("sensitivities", title, shown, folded=True)
 
 
-# --- replays --------------------------------------------------------------------------------------
-
-
 def replay_rows(study: Study, pair: Pair) -> list[tuple[object, ...]]:
     """Totals of every algorithm over its seeds, under the listed choices and spread settings."""
     reference = searched_for(study, pair)
@@ -324,32 +345,15 @@ def replay_rows(study: Study, pair: Pair) -> list[tuple[object, ...]]:
     for algorithm in study.case.algorithms:
         for name, runs in study.spread_runs(algorithm.id, pair).items():
             s = spread(np.array([r.reported_time for r in runs]))
-            known = np.isfinite(s.median) and reference is not None
-            away = gap(s.median, reference).percent if known and reference is not None else None
-            rows.append(
-                (
-                    algorithm.name,
-                    name,
-                    s.runs,
-                    s.failed,
-                    *(
-                        f"{x:.6f} s" if np.isfinite(x) else None
-                        for x in (s.lowest, s.median, s.highest)
-                    ),
-                    away,
-                )
-            )
+            away = None
+            if reference is not None and np.isfinite(s.median):
+                away = gap(s.median, reference).percent
+            totals = (s.lowest, s.median, s.highest)
+            shown = [f"{x:.6f} s" if np.isfinite(x) else None for x in totals]
+            rows.append((algorithm.name, name, s.runs, s.failed, *shown, away))
     return rows
 
 
-REPLAY_COLUMNS = (
-    "algorithm",
-    "choices",
-    ">runs",
-    ">without answer",
-    ">shortest",
-    ">median",
-    ">longest",
-    ">gap of the median",
-)
+REPLAY_COLUMNS = ("algorithm", "choices", ">runs", ">without answer", ">shortest", ">median",
+                  ">longest", ">gap of the median")  # fmt: skip
 """Columns of `replay_rows`."""

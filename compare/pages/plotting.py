@@ -55,15 +55,14 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
     'problem: motion'
     """
     if isinstance(result, Solution):
-        return motion_picture(
-            result.problem, result.durations, title=_motion(result.problem), check=result.check,
-            nodal=result.nodal,
-        )  # fmt: skip
+        problem, title = result.problem, f"{result.problem.name}: motion"
+        h, free = result.durations, result.nodal
+        return motion_picture(problem, h, title=title, check=result.check, nodal=free)
     if isinstance(result, Problem):
         if beside is None or isinstance(beside, Solution | JointLimits):
             raise TrajgapError("plot: give the durations of the motion, plot(problem, durations)")
         judged = check(result, beside)
-        return motion_picture(result, beside, title=_motion(result), check=judged)
+        return motion_picture(result, beside, title=f"{result.name}: motion", check=judged)
     if isinstance(result, Motion | Samples):
         if not isinstance(beside, JointLimits):
             raise TrajgapError("plot: give the limits as well, plot(motion, limits)")
@@ -88,7 +87,3 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
     else:
         fall, name = result, result.problem
     return waterfall_picture(fall, title=f"Where the time goes: {name}")
-
-
-def _motion(problem: Problem) -> str:
-    return f"{problem.name}: motion"

@@ -10,14 +10,16 @@ from ...problem.cases import Statement
 from ...problem.curves import ClampedBSpline, Knots, Parameters, clamped_readings
 from ..audits import CaseAudit, answers, place, segments
 from ..blocks import Block, Cell, Folded, Grid, Plain, Prose, Section, table, word
-from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why, capital
-from .numbers import problem_cell
-from .units import both_units
-
-_FEW = 4
-"""Rows of a table that stand in the open; a longer one is folded."""
-_OPEN = (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)
-"""What decides nothing about limits."""
+from ..documents import (
+    ClaimVerdict,
+    Keeping,
+    ReadingOutcome,
+    ReadingsSummary,
+    Why,
+    capital,
+    value_or_none,
+)
+from .numbers import both_units, problem_cell
 
 
 def side_by_side(one: CaseAudit) -> Section:
@@ -30,7 +32,7 @@ def side_by_side(one: CaseAudit) -> Section:
         title = f"{len(summary.admissible)} readings side by side"
         found = answers(summary, lambda claim, _: place(one.case.claim(claim)))
         said = [Prose(capital(answer)) for answer in found]
-        if rows > _FEW:
+        if rows > 4:
             blocks += said
             blocks.append(Folded(title, tuple(tables)))
         else:
@@ -46,15 +48,10 @@ def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
     for clue in summary.clues:
         key = (clue.where, clue.text, clue.computed, str(clue.speaks))
         found.setdefault(key, []).append(clue.reading)
-    rows = tuple(
-        (
-            f"{where}\n{said}",
-            "; ".join(summary.labels[reading] for reading in readings),
-            speaks,
-            computed,
-        )
+    rows = [
+        (f"{where}\n{said}", "; ".join(summary.labels[one] for one in readings), speaks, computed)
         for (where, said, computed, speaks), readings in found.items()
-    )
+    ]
     blocks: list[Plain] = []
     if not isinstance(summary.default_why, Why):
         blocks.append(Prose(f"Default: {summary.labels[summary.default]}. {summary.default_why}"))
@@ -78,24 +75,11 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
     rows, steps = [], 0
     for outcome in outcomes:
         held = outcome.held
-        if isinstance(held, Why):
-            continue
-        steps = held.steps
-        vertices = None if isinstance(held.vertices, Why) else f"{held.vertices:.4g}"
-        whose = (
-            place(one.case.claim(outcome.claim))
-            if outcome.claim
-            else problem_cell(one.case, outcome.problem)
-        )
-        rows.append(
-            (
-                whose,
-                one.case.labels[outcome.reading],
-                f"{held.everywhere:.4g}",
-                f"{held.sampled:.4g}",
-                vertices,
-            )
-        )
+        if not isinstance(held, Why):
+            steps = held.steps
+            ratios = (held.everywhere, held.sampled, held.vertices)
+            shown = [None if isinstance(x, Why) else f"{x:.4g}" for x in ratios]
+            rows.append((_whose(one, outcome), one.case.labels[outcome.reading], *shown))
     columns = ("durations", "reading", ">for all t", ">at samples", ">on control vertices")
     note = (
         "Largest ratio of the printed durations to a limit; above 1 it is broken. Every verdict "
@@ -105,6 +89,13 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
     return table(columns, rows).filled, Prose(note, "note")
 
 
+def _whose(one: CaseAudit, outcome: ReadingOutcome) -> str:
+    """Where the durations of an outcome are printed, or the problem if none are."""
+    if outcome.claim:
+        return place(one.case.claim(outcome.claim))
+    return problem_cell(one.case, outcome.problem)
+
+
 def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     """One table for each printed answer, or for each problem without one."""
     default = one.case.default_reading.id
@@ -112,11 +103,10 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     for outcome in summary.outcomes:
         printed.setdefault((outcome.claim, outcome.problem), []).append(outcome)
     names = ("reading", "limits", "over a limit", ">× to limits", ">optimum", "printed total")
-    grids: list[Block] = []
-    for (claim, problem), own in printed.items():
-        rows = tuple(_row(outcome, default, summary) for outcome in own)
-        where = place(one.case.claim(claim)) if claim else problem_cell(one.case, problem)
-        grids.append(table(names, rows, where).filled)
+    grids: list[Block] = [
+        table(names, [_row(x, default, summary) for x in own], _whose(one, own[0])).filled
+        for own in printed.values()
+    ]
     note = (
         "Limits are judged for all ways in which the digits may have been rounded or cut off; "
         "jumps and violated segments are those of the printed point. × to limits: the factor on "
@@ -129,13 +119,8 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
 def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tuple[object, ...]:
     mark = "\n(default)" if outcome.reading == default else ""
     mark += "\n(implausible)" if outcome.reading in summary.implausible else ""
-    optimum = stretch = gap = None
-    if not isinstance(outcome.optimum, Why):
-        optimum = f"{outcome.optimum:.6f} s\n{outcome.evidence}"
-    if not isinstance(outcome.stretch, Why):
-        stretch = f"{outcome.stretch:.4f}"
-    if not isinstance(outcome.gap, Why):
-        gap = f"{outcome.gap.percent.replace('-', '−')}\n{outcome.gap.kind}"
+    optimum, stretch = value_or_none(outcome.optimum), value_or_none(outcome.stretch)
+    gap = value_or_none(outcome.gap)
     over = ""
     if outcome.excesses:
         worst = max(outcome.excesses, key=lambda e: e.ratio)
@@ -147,16 +132,17 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
     limits = Cell("")
     if not isinstance(outcome.keeping, Why):
         limits = word(outcome.keeping)
-        if outcome.keeping in _OPEN:
+        # What decides nothing about limits.
+        if outcome.keeping in (Keeping.DISCONTINUOUS, Keeping.UNDECIDED):
             # The word that the claim has under this reading; its reason is behind the link.
             limits = replace(limits, text=str(ClaimVerdict.NOT_CHECKABLE))
     return (
         summary.labels[outcome.reading] + mark,
         replace(limits, text=limits.text + jumps),
         over,
-        stretch,
-        optimum,
-        gap,
+        stretch and f"{stretch:.4f}",
+        optimum and f"{optimum:.6f} s\n{outcome.evidence}",
+        gap and f"{gap.percent.replace('-', '−')}\n{gap.kind}",
     )
 
 
@@ -164,20 +150,14 @@ def _without_problems(one: CaseAudit) -> Grid:
     """Curve and limits of each reading, where nothing can be computed for want of way-points."""
     rows, slides = [], False
     for pid, rid in one.case.selections():
-        if rid not in one.study.readings:
-            continue
-        statement = one.case.statement(pid, rid)
-        curve, limits, _, _ = statement.data()
-        slides |= any(statement.linear)
-        rows.append(
-            (
-                one.case.labels[rid],
-                problem_cell(one.case, pid),
-                curve.name,
-                _listed(statement, "velocity", limits.velocity),
-                _listed(statement, "acceleration", limits.acceleration),
-            )
-        )
+        if rid in one.study.readings:
+            statement = one.case.statement(pid, rid)
+            curve, limits, _, _ = statement.data()
+            slides |= any(statement.linear)
+            speeds = _listed(statement, "velocity", limits.velocity)
+            rates = _listed(statement, "acceleration", limits.acceleration)
+            asked = one.case.labels[rid], problem_cell(one.case, pid)
+            rows.append((*asked, curve.name, speeds, rates))
     units = ("", "") if slides else (", rad/s", ", rad/s²")
     limited = (f"velocity limits{units[0]}", f"acceleration limits{units[1]}")
     names = ("reading", "problem", "curve", *limited)
@@ -207,9 +187,5 @@ def _determined(case: Case) -> list[Block]:
         if r.parameters is Parameters.TIMES
     )
     grid = table((">degree", "knots", "count", "~what holds"), rows)
-    return [
-        Folded(
-            f"Degrees and knots through {count} way-points, and what the conditions determine",
-            (grid,),
-        )
-    ]
+    title = f"Degrees and knots through {count} way-points, and what the conditions determine"
+    return [Folded(title, (grid,))]

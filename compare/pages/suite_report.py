@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from ...problem import QUANTITIES, Limits, Problem, visible
+from ...problem import QUANTITIES, Problem, visible
 from ...problem.suite import BenchmarkInstance, plain_text, suite_version
-from ..blocks import Block, Cell, Page, Prose, Section, Terms, instance_terms, suite_table, table
-from .writer import page_text
-
-_TITLE = "Suite of certified instances"
-"""Heading of the index."""
+from ..blocks import Block, Page, Prose, Section, Terms, instance_terms, suite_table, table
+from .rendering import page_text
 
 
 def suite_pages(
@@ -27,34 +24,37 @@ def suite_pages(
         step(one.name)
         found[f"{one.name}.html"] = page_text(instance_page(one))
         found[f"{one.name}.toml"] = plain_text(one)
-    rows = Section("instances", "Instances", (suite_table(instances, "{}.html"),))
-    title = f"{_TITLE} {suite_version()}"
-    index = Page("suite", title, (rows,), _counts(instances), links=(("JSON", "suite.json"),))
-    return {**found, "index.html": page_text(index)}
-
-
-def _counts(instances: Sequence[BenchmarkInstance]) -> str:
     certified = [one for one in instances if one.evidence == "certified"]
     narrow = sum(one.width <= 1e-6 for one in certified)
-    return (
+    counts = (
         f"{len(instances)} instances; {len(certified)} certified to 1 % or better, {narrow} of "
         "them to 1e-6. Every lower bound is proved by a certificate."
     )
+    rows = Section("instances", "Instances", (suite_table(instances, "{}.html"),))
+    title = f"Suite of certified instances {suite_version()}"
+    index = Page("suite", title, (rows,), counts, links=(("JSON", "suite.json"),))
+    return {**found, "index.html": page_text(index)}
 
 
 def instance_page(one: BenchmarkInstance) -> Page:
     """Everything that the page of one instance says, in order."""
     case = one.case()
     problem = case.problem()
+    columns = ("way-point", *(f">joint {label} (rad)" for label in problem.joints))
+    points = [(k, *(f"{q:.6g}" for q in row)) for k, row in enumerate(problem.waypoints)]
+    used = (
+        Prose(f"As a plain file: {one.name}.toml. In trajgap:"),
+        Prose(f"trajgap solve {one.id}\ntrajgap check {one.id} --durations ...", "source"),
+    )
     return Page(
         one.name,
         one.name,
         (
             Section("bounds", "What is known", (instance_terms(one),)),
             Section("verify", "Verify in 60 seconds with one file", _verified(one)),
-            Section("problem", "The problem", (_question(problem), _limits(problem))),
+            Section("problem", "The problem", (table(columns, points), _limits(problem))),
             Section("source", "Where it comes from", (Prose(case.source.title),)),
-            Section("use", "Use it", _used(one)),
+            Section("use", "Use it", used),
         ),
         trail=f"{visible(case.title)}. Suite {suite_version()}.",
         links=(("All instances", "index.html"), ("Plain file", f"{one.name}.toml")),
@@ -67,45 +67,23 @@ def _verified(one: BenchmarkInstance) -> tuple[Block, ...]:
         return Prose(said), Prose(one.command, "source")
     library = "the standard library of Python"
     library = f"numpy and {library}" if one.name.startswith("quintic") else library
+    case = "case file, SHA-256", one.case_sha256
     took = "" if one.verify_seconds is None else f" It took {one.verify_seconds:g} s here."
     return (
         Prose(f"The verifier needs this one file and {library}.{took}"),
         Prose(f"python -m trajgap.verify certificates/{one.certificate}", "source"),
-        Terms(
-            (
-                ("certificate, SHA-256", str(one.certificate_sha256)),
-                ("case file, SHA-256", one.case_sha256),
-            )
-        ),
+        Terms((("certificate, SHA-256", str(one.certificate_sha256)), case)),
     )
-
-
-def _question(problem: Problem) -> Block:
-    columns = ("way-point", *(f">joint {label} (rad)" for label in problem.joints))
-    rows = [(Cell(str(k)), *(f"{q:.6g}" for q in row)) for k, row in enumerate(problem.waypoints)]
-    return table(columns, rows)
-
-
-def _sizes(limits: Limits, quantity: str) -> list[str]:
-    """Each joint's limit in digits, with both sides where they differ in size."""
-    low, high = (x.tolist() for x in limits.ends(quantity))
-    return [
-        (f"{b:.6g}" if math.isfinite(b) else "none") if -a == b else f"{a:.6g} to {b:.6g}"
-        for a, b in zip(low, high, strict=True)
-    ]
 
 
 def _limits(problem: Problem) -> Block:
-    limits = problem.limits
-    rows = [
-        (f"{name} (rad/s{power})", *(x for x in _sizes(limits, name)))
-        for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True)
-    ]
+    """Each joint's limits in digits, with both sides where they differ in size."""
+    rows = []
+    for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True):
+        sides = zip(*(x.tolist() for x in problem.limits.ends(name)), strict=True)
+        sizes = [
+            (f"{b:.6g}" if math.isfinite(b) else "none") if -a == b else f"{a:.6g} to {b:.6g}"
+            for a, b in sides
+        ]
+        rows.append((f"{name} (rad/s{power})", *sizes))
     return table(("limit", *(f">joint {label}" for label in problem.joints)), rows)
-
-
-def _used(one: BenchmarkInstance) -> tuple[Block, ...]:
-    return (
-        Prose(f"As a plain file: {one.name}.toml. In trajgap:"),
-        Prose(f"trajgap solve {one.id}\ntrajgap check {one.id} --durations ...", "source"),
-    )

@@ -1,22 +1,122 @@
-"""What a report page was made from: problems, findings, readings, assumptions."""
+"""Claims on a report page, causes, findings, and what all of it was made from."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
 from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
 from ...problem.cases import Statement
-from ..audits import RULES, CaseAudit, Study, place
-from ..blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, table, word
-from ..documents import ClaimVerdict, Finding, Gap, Severity, Why, facts
-from .numbers import asked_cells, problem_cell
-from .units import both_units, one_unit
+from ..audits import RULES, CaseAudit, Study, claim_text, place, plainly
+from ..blocks import (
+    Block,
+    Cell,
+    Folded,
+    Grid,
+    Prose,
+    Section,
+    Terms,
+    claims_shown,
+    names,
+    slug,
+    table,
+    word,
+)
+from ..documents import (
+    AGAINST,
+    Cause,
+    ClaimVerdict,
+    Finding,
+    Gap,
+    Severity,
+    Urgency,
+    Why,
+    facts,
+    opened,
+    worth_little,
+)
+from .numbers import asked_cells, both_units, one_unit, problem_cell
 
-_TITLES = {rule.id: rule.title for rule in RULES}
-"""What each rule looks at, by its id."""
+_OPEN_WORDS = 30
+"""Words of a reason that stand in the open; what goes beyond is a fold away."""
+
+
+def against(one: CaseAudit) -> Section:
+    """Claims that are refuted, contradicted or depend on the reading, and what lies behind."""
+    chosen = [j for verdict in AGAINST for j in one.judgements if j.verdict is verdict]
+    blocks: list[Block] = [*claims_shown(one.document, chosen, words=_OPEN_WORDS)]
+    causes = [c for c in one.causes if not _covered(one, c)]
+    if causes:
+        blocks += [Prose("The causes", "heading"), *(b for c in causes for b in _behind(one, c))]
+    title = "Evidence against printed statements"
+    if chosen:
+        title = "Claims refuted, contradicted or dependent on the reading"
+    return Section("against", title, tuple(blocks))
+
+
+def folded_claims(one: CaseAudit) -> Iterator[Section]:
+    """Supported claims, then those that cannot be checked, each behind a fold."""
+    for verdict in (ClaimVerdict.SUPPORTED, ClaimVerdict.NOT_CHECKABLE):
+        own = [j for j in one.judgements if j.verdict is verdict]
+        beside = worth_little(own)
+        title = f"{len(own)} claim{'' if len(own) == 1 else 's'} {verdict}"
+        title += f": {beside}" if beside else ""
+        found = tuple(claims_shown(one.document, own, words=_OPEN_WORDS))
+        yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
+
+
+def _covered(one: CaseAudit, cause: Cause) -> bool:
+    """Whether a claim above says all of a warning: nothing rests on it, nothing explains it."""
+    if cause.severity is Severity.ERROR or cause.explanations or cause.consequences:
+        return False
+    return any(j.claim == cause.claim and j.verdict in AGAINST for j in one.judgements)
+
+
+def _behind(one: CaseAudit, cause: Cause) -> Iterator[Block]:
+    """One cause, what would explain it, and the claims that fall with it."""
+    says, _ = opened(plainly(one.case, cause, names(one.document).implausible), _OPEN_WORDS)
+    yield Prose(" ".join(says), word=cause.severity)
+    # The one reading of a cause stands in front of it already.
+    known = len(cause.readings) == 1
+    alike = groupby(cause.explanations, lambda e: (known and e.in_any) or e.effect)
+    changes = [f"{' Or: '.join(e.change for e in each)} {effect}" for effect, each in alike]
+    shown = tuple(Prose(change, "beside") for change in changes)
+    yield from shown[:1]
+    if shown[1:]:
+        yield Folded("Other changes that would explain it", shown[1:])
+    hit = dict.fromkeys(c.claim for c in cause.consequences if c.claim and c.claim != cause.claim)
+    if hit:
+        claims = map(one.case.claim, hit)
+        rows = [
+            (Cell(claim_text(one.case, c), target=file_name("claim", c.id)), place(c))
+            for c in claims
+        ]
+        title = f"{len(hit)} more claim{'' if len(hit) == 1 else 's'} affected"
+        yield Folded(title, (table(("claim", "place"), rows),))
+
+
+def advised(one: CaseAudit) -> Section:
+    """What contradicts itself or is doubtful stands open, what is left open behind a fold."""
+    columns = ("", "where", "what was found", "~what to change")
+    pressing, left_open = (
+        table(
+            columns,
+            [
+                (word(a.urgency), a.where, a.says, a.change)
+                for a in one.advice
+                if (a.urgency is Urgency.OPEN) == later
+            ],
+        )
+        for later in (False, True)
+    )
+    blocks: list[Block] = [pressing] if pressing.rows else []
+    if left_open.rows:
+        title = f"{len(left_open.rows)} points that readers cannot check"
+        blocks.append(Folded(title, (left_open,)))
+    return Section("before-you-submit", "Before you submit", tuple(blocks))
 
 
 def problems_audited(one: CaseAudit) -> Section:
@@ -40,21 +140,14 @@ def _problems(study: Study) -> Grid:
         p = study.problem(pair)
         slides |= any(p.linear)
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint separately"
-        rows.append(
-            (
-                *asked_cells(study, pair),
-                f"{len(p.joints)} × {p.waypoints.shape[0]}",
-                p.curve.name,
-                _limits(p, study.case.statement(*pair)),
-                _bounds(p),
-                how,
-            )
-        )
-    names = ("problem", "reading", "joints × way-points", "curve", "limits", "durations",
+        size = f"{len(p.joints)} × {p.waypoints.shape[0]}"
+        limits = _limits(p, study.case.statement(*pair))
+        rows.append((*asked_cells(study, pair), size, p.curve.name, limits, _bounds(p), how))
+    columns = ("problem", "reading", "joints × way-points", "curve", "limits", "durations",
              "coupling")  # fmt: skip
     base = "rad, m and s" if slides else "rad and s"
     caption = f"Problems; {base} in brackets if the paper has other units"
-    return table(names, rows, caption).filled
+    return table(columns, rows, caption).filled
 
 
 def _limits(problem: Problem, statement: Statement) -> str:
@@ -87,9 +180,6 @@ def _bounds(problem: Problem) -> str:
     return text
 
 
-# --- findings -------------------------------------------------------------------------------------
-
-
 def findings(one: CaseAudit) -> Section:
     """Findings by severity; those that say the same under several readings share a row."""
     blocks: list[Block] = []
@@ -106,40 +196,31 @@ def findings(one: CaseAudit) -> Section:
     return Section("findings", "Every finding, rule by rule", tuple(blocks), folded=True)
 
 
-def _word(finding: Finding) -> str:
-    """The verdict of a finding; a distance that was computed and decides nothing informs."""
-    informs = finding.verdict is ClaimVerdict.NOT_CHECKABLE and isinstance(finding.gap, Gap)
-    return "information" if informs else str(finding.verdict)
-
-
 def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for f in found:
         key = (f.rule, f.claim, f.problem, f.verdict, f.printed, f.computed, f.message, _gap(f))
         groups.setdefault(key, []).append(f)
-    rows = []
+    titles, rows = {rule.id: rule.title for rule in RULES}, []
     for f, *more in groups.values():
-        names = [x.reading for x in (f, *more) if x.reading is not None]
-        which = (
-            "all"
-            if not names or len(set(names)) == readings
-            else "; ".join(case.labels[name] for name in dict.fromkeys(names))
-        )
-        about = f.claim or ""
-        where = place(case.claim(about)) if about else ""
+        under = dict.fromkeys(x.reading for x in (f, *more) if x.reading is not None)
+        which = "all"
+        if 0 < len(under) < readings:
+            which = "; ".join(case.labels[name] for name in under)
+        where = place(case.claim(f.claim)) if f.claim else ""
         problem = problem_cell(case, f.problem) if f.problem else ""
-        under = [where, problem, f"readings: {which}"]
+        known = "\n".join(x for x in (where, problem, f"readings: {which}") if x)
+        # A distance that was computed and decides nothing informs.
+        informs = f.verdict is ClaimVerdict.NOT_CHECKABLE and isinstance(f.gap, Gap)
+        said = "information" if informs else str(f.verdict)
         rows.append(
             (
-                Cell(f"{f.rule}\n{_TITLES.get(f.rule, '')}", target=f"word-{f.rule}"),
-                Cell(
-                    "\n".join(x for x in under if x),
-                    target=file_name("claim", about) if about else "",
-                ),
+                Cell(f"{f.rule}\n{titles.get(f.rule, '')}", target=f"word-{f.rule}"),
+                Cell(known, target=file_name("claim", f.claim) if f.claim else ""),
                 f.printed,
                 f.computed,
                 _gap(f),
-                replace(word(f.verdict), text=f"{_word(f)}\nbasis: {f.basis}"),
+                replace(word(f.verdict), text=f"{said}\nbasis: {f.basis}"),
                 f.message,
             )
         )
@@ -152,55 +233,32 @@ def _gap(finding: Finding) -> str | None:
     return None if isinstance(gap, Why) else f"{gap.percent}\n{gap.kind}"
 
 
-# --- what it rests on -----------------------------------------------------------------------------
-
-
 def foundations(one: CaseAudit) -> list[Section]:
     """Readings, assumptions, and what cannot be checked."""
     case, default = one.case, one.case.default_reading.id
     readings = tuple(
-        (
-            f"{case.labels[r.id]}{' (default)' if r.id == default else ''}",
-            f"{r.why} Its id: {r.id}",
-        )
+        (f"{case.labels[r.id]}{' (default)' if r.id == default else ''}", f"{r.why} Its id: {r.id}")
         for r in case.readings
         if r.id in one.study.readings
     )
-    assumed = tuple(
-        (
-            a.text,
-            a.choice,
-            "; ".join(dict.fromkeys(_affected(case, one) for one in a.affects)),
-        )
+    assumed = [
+        (a.text, a.choice, "; ".join(dict.fromkeys(_affected(case, x) for x in a.affects)))
         for a in case.assumptions
+    ]
+    lost = [(n.where, n.what, n.why) for n in case.not_checkable]
+    choices: list[Block] = [table(("left open", "chosen", "affects"), assumed)] if assumed else []
+    for a in case.algorithms:
+        if a.open:
+            points = tuple((str(i), line) for i, line in enumerate(a.open, start=1))
+            choices.append(Folded(f"Left open for {a.name}", (Terms(points),)))
+    shown = (Terms(readings),) if len(readings) > 1 else ()
+    unread = (table(("where", "what", "why"), lost),) if lost else ()
+    parts: tuple[tuple[str, str, tuple[Block, ...]], ...] = (
+        ("readings", "Readings and why they are admissible", shown),
+        ("assumptions", "Points that the text leaves open, and the choices made", tuple(choices)),
+        ("not-checkable", "Not checkable from the text", unread),
     )
-    lost = tuple((n.where, n.what, n.why) for n in case.not_checkable)
-    opened = [
-        Folded(f"Left open for {a.name}", (Terms(_numbered(a.open)),))
-        for a in case.algorithms
-        if a.open
-    ]
-    choices = (table(("left open", "chosen", "affects"), assumed),) if assumed else ()
-    return [
-        Section(
-            "readings",
-            "Readings and why they are admissible",
-            (Terms(readings),) if len(readings) > 1 else (),
-            folded=True,
-        ),
-        Section(
-            "assumptions",
-            "Points that the text leaves open, and the choices made",
-            (*choices, *opened),
-            folded=True,
-        ),
-        Section(
-            "not-checkable",
-            "Not checkable from the text",
-            (table(("where", "what", "why"), lost),) if lost else (),
-            folded=True,
-        ),
-    ]
+    return [Section(*part, folded=True) for part in parts]
 
 
 def _affected(case: Case, one: str) -> str:
@@ -208,12 +266,8 @@ def _affected(case: Case, one: str) -> str:
     places = {c.id: place(c) for c in case.claims}
     printed = {t.id: t.where for t in case.tables}
     printed |= {t.id: t.where for t in case.columns} | {t.id: t.where for t in case.cartesian}
-    names = {a.id: a.name for a in case.algorithms}
+    algorithms = {a.id: a.name for a in case.algorithms}
     titles = {p.id: p.title or p.id for p in case.problems}
     words = {"waypoints": "way-points", "interpolant": "curve"}
-    called: dict[str, str] = {**words, **titles, **printed, **names, **places, **case.labels}
+    called: dict[str, str] = {**words, **titles, **printed, **algorithms, **places, **case.labels}
     return called.get(one, one)
-
-
-def _numbered(lines: Iterable[str]) -> tuple[tuple[str, str], ...]:
-    return tuple((str(i), line) for i, line in enumerate(lines, start=1))

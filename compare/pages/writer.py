@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-
-from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME_TOTAL, STARTS
 from ...problem import LONGEST_NAME, TOLERANCE, Case, CaseError, file_name, read_regular
@@ -29,38 +28,18 @@ from ..blocks import (
 from ..documents import AuditDocument, ClaimVerdict, json_text, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
-from .claims import advised, against, folded_claims
-from .environment import environment, style
-from .exhibits import exhibits_of_motion, exhibits_of_search
+from .exhibits import exhibits_of_motion, exhibits_of_search, other_instances
 from .folders import check_folder, write_folder
 from .glossary import glossary
-from .instances import other_instances
-from .markdown_text import markdown
 from .numbers import card_picture, optima, reached_runs, sensitivities, where_time_goes
 from .readings import side_by_side
-from .verdicts import findings, foundations, problems_audited
+from .rendering import markdown, page_text
+from .verdicts import advised, against, findings, folded_claims, foundations, problems_audited
 
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
-_LARGEST_MARK = 1_000_000_000
-"""Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
-_WHAT = "an audit"
-"""What the folder is called in messages."""
-_INDEX = "index.html"
-"""The page that leads to those of the cases."""
-RESERVED = (Path(_INDEX).stem, Path(MARK).stem, Path(GLOSSARY).stem)
+RESERVED = (Path("index.html").stem, Path(MARK).stem, Path(GLOSSARY).stem)
 """Names of pages of the report itself, which no case can take."""
-
-
-class _MarkedCase(BaseModel):
-    case: str
-
-
-class _Mark(BaseModel):
-    """What is read of an earlier report, of whatever version."""
-
-    version: str = Field(alias="schema")
-    cases: tuple[_MarkedCase, ...]
 
 
 def write_report(report: AuditReport, out: Path) -> None:
@@ -81,7 +60,7 @@ def write_report(report: AuditReport, out: Path) -> None:
         If the folder contains anything else, two cases would share a file, or it cannot be written.
     """
     check_report_folder(Path(out), [one.case for one in report.cases], option="")
-    write_folder(Path(out), report_files(report), _foreign, _WHAT, option="")
+    write_folder(Path(out), report_files(report), _foreign, "an audit", option="")
 
 
 def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--out") -> None:
@@ -94,21 +73,22 @@ def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--
         taken = "another page" if case.id in RESERVED else "another case"
         if case.id in RESERVED or names.count(case.id) > 1:
             raise CaseError(case.file, "id", f"{case.id!r} is the name of {taken}; rename it")
-    check_folder(out, _foreign, _WHAT, option)
+    check_folder(out, _foreign, "an audit", option)
 
 
 def _foreign(out: Path, there: list[str]) -> str | None:
     """The first file that no report has written; None if there is none."""
     try:
-        mark = _Mark.model_validate_json(read_regular(out / MARK, _LARGEST_MARK, "name another"))
-    except (OSError, ValueError):
+        # Hundreds of times the largest one shipped.
+        mark = json.loads(read_regular(out / MARK, 1_000_000_000, "name another"))
+        version, cases = str(mark["schema"]), [str(one["case"]) for one in mark["cases"]]
+    except (OSError, ValueError, TypeError, LookupError, RecursionError):
         return there[0]
-    if not mark.version.startswith("trajgap/"):
+    if not version.startswith("trajgap/"):
         return MARK
-    cases = [one.case for one in mark.cases]
     pages = [file_name(case) for case in cases]
     known = {
-        _INDEX,
+        "index.html",
         GLOSSARY,
         MARK,
         *(f"{page}.{end}" for page in pages for end in ("html", "md", "json")),
@@ -130,7 +110,7 @@ def report_files(report: AuditReport) -> dict[str, str]:
         files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[page.picture(picture)] = themed(picture.document)
-    files[_INDEX] = page_text(_index(report))
+    files["index.html"] = page_text(_index(report))
     words = Page("glossary", "How to read a verdict", (glossary(),))
     files[GLOSSARY] = page_text(words)
     files[MARK] = json_text(document)
@@ -146,11 +126,6 @@ def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, 
     words = replace(Page("glossary", "How to read a verdict", (glossary(),)), links=links[:1])
     pictures = {page.picture(drawn): themed(drawn.document) for drawn in page.pictures}
     return {f"{page.file}.html": page_text(page), GLOSSARY: page_text(words), **pictures}
-
-
-def page_text(page: Page) -> str:
-    """HTML of one page that stands by itself."""
-    return environment().get_template("case.html").render(page=page, style=style())
 
 
 def _index(report: AuditReport) -> Page:
@@ -183,12 +158,13 @@ def _index(report: AuditReport) -> Page:
 def case_page(one: CaseAudit) -> Page:
     """Everything that the page of one case says, in order."""
     source, made = one.document.source, one.document.provenance
+    shown = card_shown(one.card, tally(one.judgements), card_picture(one))
     audited = f"Audited {made.date} with trajgap {made.trajgap}"
     return Page(
         one.case.id,
         one.case.title,
         (
-            _card(one),
+            Section("card", "Verdict", (shown,)),
             advised(one),
             against(one),
             where_time_goes(one),
@@ -214,15 +190,8 @@ def case_page(one: CaseAudit) -> Page:
     ).filled
 
 
-def _card(one: CaseAudit) -> Section:
-    shown = card_shown(one.card, tally(one.judgements), card_picture(one))
-    return Section("card", "Verdict", (shown,))
-
-
 def _not_computed(one: CaseAudit) -> Section:
     """Why there are no optima; nothing if there are some."""
-    if one.study.has_problems:
-        return Section("not-computed", "Not computed", ())
     why = one.case.statement().waypoints.not_printed or "none of its readings poses a problem"
     # Where there are several readings, the section above has said why.
     reason = "" if one.readings is not None else f" ({why})"
@@ -230,7 +199,7 @@ def _not_computed(one: CaseAudit) -> Section:
         f"No problem is posed, because way-points are not printed{reason}. The case has no "
         "optima, motions, replays or landscapes of its own."
     )
-    return Section("not-computed", "Not computed", (said,))
+    return Section("not-computed", "Not computed", () if one.study.has_problems else (said,))
 
 
 def _reproduced(one: CaseAudit) -> Section:

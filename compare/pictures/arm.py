@@ -5,24 +5,21 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Chain, TrajgapError, forward_kinematics, link_frames, visible
-from .drawing import BLUE, GREEN, GRID, INK, MUTED, ORANGE, RED
+from .drawing import BLUE, GREEN, ORANGE, RED
 
-_STEPS = 72
-"""Steps of time of the slowest motion: 20 a second for motions of three or four seconds."""
 _TURN, _TILT = np.deg2rad(-55.0), np.deg2rad(22.0)
 """Where the eye stands: beside the arm and a little above, so no axis points at it."""
 _WIDE, _HIGH, _ROOM = 300.0, 280.0, 14.0
 """Size of one panel and its margin, in its own units: three stand side by side on a page."""
-_WAY = 160
-"""Points on the way of the end: a curve to the eye."""
-_COLOURS = (ORANGE, BLUE, GREEN, RED)
-"""Of the motions, in order."""
+_COLOURS = {ORANGE: "orange", BLUE: "blue", GREEN: "green", RED: "red"}
+"""Of the motions, in order, with the variables of a theme that replace them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +39,7 @@ class ArmMotion:
 
 
 def arm_picture(
-    chain: Chain,
-    motions: Sequence[ArmMotion],
-    waypoints: ArrayLike,
-    *,
-    name: str,
-    title: str,
+    chain: Chain, motions: Sequence[ArmMotion], waypoints: ArrayLike, *, name: str, title: str
 ) -> str:
     """Panels in which one arm follows each motion, with a slider over time.
 
@@ -82,13 +74,24 @@ def arm_picture(
                 f"{one.times.size} times and {chain.joints} joints"
             )
     longest = max(float(one.times[-1]) for one in motions)
-    clock = np.linspace(0.0, longest, _STEPS + 1)
-    arms = [_points(chain, one.at(clock)) for one in motions]
+    clock = np.linspace(0.0, longest, 73)  # 20 steps a second for three or four seconds
+    # Origins of base and links, shape (times, joints + 1, 3).
+    arms = [
+        np.pad(link_frames(chain, one.at(clock))[..., :3, 3], ((0, 0), (1, 0), (0, 0)))
+        for one in motions
+    ]
+    # The way of each end, a curve to the eye, shape (points, 3).
+    ways = [
+        forward_kinematics(chain, one.at(np.linspace(0.0, float(one.times[-1]), 161)))[..., :3, 3]
+        for one in motions
+    ]
     marks = forward_kinematics(chain, np.asarray(waypoints, dtype=np.float64))[..., :3, 3]
     view = _View(np.vstack([*(a.reshape(-1, 3) for a in arms), marks]))
     panels = "".join(
-        _panel(one, arm, _way(chain, one), view, marks, colour, f"{name}-{k}")
-        for k, (one, arm, colour) in enumerate(zip(motions, arms, _COLOURS, strict=False))
+        _panel(one, arm, way, view, marks, colour, f"{name}-{k}")
+        for k, (one, arm, way, colour) in enumerate(
+            zip(motions, arms, ways, _COLOURS, strict=False)
+        )
     )
     frames = [[view.line(pose) for pose in arm] for arm in arms]
     floors = [[view.line(pose * (1, 1, 0)) for pose in arm] for arm in arms]
@@ -101,24 +104,17 @@ def arm_picture(
         },
         separators=(",", ":"),
     )
+    style, controls, script = (_static(f"arm{end}") for end in (".css", "_controls.html", ".js"))
     return (
-        f'<figure class="trajgap-arm" id="{name}">\n<style>{_STYLE}</style>\n'
+        f'<figure class="trajgap-arm" id="{name}">\n<style>\n{style}</style>\n'
         f"<figcaption>{escape(visible(title))}</figcaption>\n"
-        f'<div class="trajgap-arm-panels">\n{panels}</div>\n{_CONTROLS}'
-        f'<script type="application/json">{data}</script>\n<script>{_SCRIPT}</script>\n</figure>\n'
+        f'<div class="trajgap-arm-panels">\n{panels}</div>\n{controls}'
+        f'<script type="application/json">{data}</script>\n<script>\n{script}</script>\n</figure>\n'
     )
 
 
-def _points(chain: Chain, angles: Array) -> Array:
-    """Origins of base and links, shape (times, joints + 1, 3)."""
-    origins = link_frames(chain, angles)[..., :3, 3]
-    return np.concatenate([np.zeros((len(angles), 1, 3)), origins], axis=1)
-
-
-def _way(chain: Chain, motion: ArmMotion) -> Array:
-    """Positions of the end on the whole motion, shape (points, 3)."""
-    times = np.linspace(0.0, float(motion.times[-1]), _WAY + 1)
-    return forward_kinematics(chain, motion.at(times))[..., :3, 3]
+def _static(name: str) -> str:
+    return (Path(__file__).parent / "static" / name).read_text(encoding="utf-8")
 
 
 class _View:
@@ -153,7 +149,7 @@ def _panel(
     total = f"{float(motion.times[-1]):.4g} s"
     label = escape(visible(motion.label))
     dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5"/>' for x, y in view(marks))
-    dark = _variable(colour)
+    dark = f"var(--{_COLOURS[colour]}, {colour})"
     return (
         f'<div>\n<p><strong>{label}</strong> <span class="now">0.00 of {total}</span></p>\n'
         f'<svg viewBox="0 0 {_WIDE:g} {_HIGH:g}" role="img" '
@@ -167,94 +163,3 @@ def _panel(
         f'<polyline class="links" style="stroke:{dark}" points="{view.line(arm[0])}"/>\n'
         f"</svg>\n</div>\n"
     )
-
-
-def _variable(colour: str) -> str:
-    names = {BLUE: "blue", ORANGE: "orange", GREEN: "green", RED: "red", INK: "ink"}
-    return f"var(--{names[colour]}, {colour})"
-
-
-_STYLE = f"""
-.trajgap-arm {{ margin: 1rem 0; }}
-.trajgap-arm-panels {{ display: grid; gap: 0.5rem;
-  grid-template-columns: repeat(auto-fit, minmax(min(11rem, 100%), 1fr)); }}
-.trajgap-arm svg {{ width: 100%; height: auto; border: 1px solid var(--grid, {GRID});
-  border-radius: 0.3rem; }}
-.trajgap-arm polyline {{ fill: none; stroke-linejoin: round; stroke-linecap: round; }}
-.trajgap-arm .links {{ stroke-width: 5; }}
-.trajgap-arm .way {{ stroke-width: 1.2; stroke-dasharray: 3 2; }}
-.trajgap-arm .floor {{ stroke: var(--grid, {GRID}); stroke-width: 4; }}
-.trajgap-arm .marks {{ fill: var(--ink, {INK}); }}
-.trajgap-arm p {{ margin: 0.4rem 0 0.2rem; line-height: 1.3; }}
-.trajgap-arm .now {{ display: block; color: var(--muted, {MUTED});
-  font-variant-numeric: tabular-nums; }}
-.trajgap-arm-controls {{ display: flex; gap: 0.5rem; align-items: center; margin-top: 0.5rem; }}
-.trajgap-arm-controls[hidden] {{ display: none; }}
-.trajgap-arm-controls input {{ flex: 1; min-width: 6rem; }}
-.trajgap-arm-controls button {{ min-width: 2.6rem; min-height: 2rem; }}
-"""
-"""Colours follow the page's theme where it has these variables."""
-
-_CONTROLS = """<div class="trajgap-arm-controls" hidden>
-<button type="button" data-step="-1" aria-label="One step back">◀</button>
-<button type="button" data-play aria-pressed="false">Play</button>
-<button type="button" data-step="1" aria-label="One step on">▶</button>
-<input type="range" min="0" value="0" step="1" aria-label="Time">
-<output>0.00 s</output>
-</div>
-"""
-"""Shown by the script, for without it they would do nothing."""
-
-_SCRIPT = """
-{
-  const figure = document.currentScript.closest("figure");
-  const data = JSON.parse(figure.querySelector('script[type="application/json"]').textContent);
-  const panels = [...figure.querySelectorAll(".trajgap-arm-panels > div")];
-  const controls = figure.querySelector(".trajgap-arm-controls");
-  const slider = controls.querySelector("input"), said = controls.querySelector("output");
-  const play = controls.querySelector("[data-play]");
-  slider.max = data.clock.length - 1;
-  controls.hidden = false;
-  let timer = null;
-  const show = (k) => {
-    const now = data.clock[k];
-    slider.value = k;
-    said.textContent = now.toFixed(2) + " s";
-    slider.setAttribute("aria-valuetext", said.textContent);
-    panels.forEach((panel, i) => {
-      panel.querySelector(".links").setAttribute("points", data.arms[i][k]);
-      panel.querySelector(".floor").setAttribute("points", data.floors[i][k]);
-      const total = data.totals[i], done = Math.min(now, total);
-      panel.querySelector(".now").textContent =
-        done.toFixed(2) + " of " + total + " s" + (now >= total ? ", there" : "");
-    });
-  };
-  const stop = () => {
-    clearInterval(timer);
-    timer = null;
-    play.textContent = "Play";
-    play.setAttribute("aria-pressed", "false");
-  };
-  const last = data.clock.length - 1;
-  slider.addEventListener("input", () => { stop(); show(+slider.value); });
-  controls.querySelectorAll("[data-step]").forEach((button) =>
-    button.addEventListener("click", () => {
-      stop();
-      show(Math.max(0, Math.min(last, +slider.value + +button.dataset.step)));
-    }));
-  play.addEventListener("click", () => {
-    if (timer) return stop();
-    if (+slider.value === last) show(0);
-    play.textContent = "Stop";
-    play.setAttribute("aria-pressed", "true");
-    const step = 1000 * data.clock[1];
-    timer = setInterval(() => {
-      const next = +slider.value + 1;
-      if (next > last) return stop();
-      show(next);
-    }, step);
-  });
-  show(0);
-}
-"""
-"""Nothing moves before somebody asks for it."""

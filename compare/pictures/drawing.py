@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
-from typing import Any, Literal
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
 from xml.sax.saxutils import escape
 
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.ft2font import FT2Font
 
-from ...problem import visible
+from ...problem import file_name, visible
+from ..blocks import Drawn
+from ..documents import two_digits
 
 # Greys of a white page, and Okabe & Ito's colours: told apart with any common colour blindness.
 INK = "#1f2933"  # text and the main lines: nearly black
@@ -31,19 +36,6 @@ GREEN = "#009e73"  # the third series; their bluish green
 PURPLE = "#cc79a7"  # the fourth series; their reddish purple
 SKY = "#56b4e9"  # the light one beside a dark one; their sky blue
 RED = "#c8102e"  # what is printed, or wrong: darker than their vermilion, apart from the orange
-THEME = {
-    "ink": INK,
-    "muted": MUTED,
-    "grid": GRID,
-    "paper": PAPER,
-    "blue": BLUE,
-    "orange": ORANGE,
-    "green": GREEN,
-    "purple": PURPLE,
-    "sky": SKY,
-    "red": RED,
-}
-"""Colours that a page may replace, by the name of their CSS variable."""
 DARK = {
     "ink": "#e6eaf0",
     "muted": "#a3adba",
@@ -57,50 +49,16 @@ DARK = {
     "red": "#ff6b81",
 }
 """The same colours on a dark page, as its style has them."""
+THEME = dict(
+    zip(DARK, (INK, MUTED, GRID, PAPER, BLUE, ORANGE, GREEN, PURPLE, SKY, RED), strict=True)
+)
+"""Colours that a page may replace, by the name of their CSS variable."""
 KINDS = ("png", "svg", "pdf")
 """Formats of a file with a picture, as its name ends."""
-_DOTS = 150
-"""Dots an inch of a PNG: small type is sharp on a screen and in print."""
 Line = Literal["-", "--", "-.", ":"]
 """Line styles of matplotlib."""
-SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
-"""Colour and line style of the algorithms, in order; told apart without colour too."""
-
-# What every picture shares: small type for a page's column, a font that is always there, and thin
-# lines without a frame.
-_STYLE: dict[str, Any] = {
-    "font.family": ["DejaVu Sans"],
-    "font.size": 9.0,
-    # Labels come from case files; a dollar sign in them is not a formula.
-    "text.parse_math": False,
-    "text.color": INK,
-    "axes.labelcolor": INK,
-    "axes.edgecolor": MUTED,
-    "axes.titlecolor": INK,
-    "axes.titlesize": 9.0,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 8.5,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.facecolor": PAPER,
-    "axes.unicode_minus": True,
-    "figure.facecolor": PAPER,
-    "hatch.linewidth": 0.6,
-    "xtick.color": MUTED,
-    "ytick.color": MUTED,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "grid.color": GRID,
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "legend.fontsize": 8.5,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "trajgap",
-    "svg.image_inline": True,
-}
+Style: TypeAlias = dict[str, Any]
+"""Keywords of a drawing function."""
 
 
 class Picture(Figure):
@@ -118,7 +76,7 @@ class Picture(Figure):
 @contextmanager
 def drawing() -> Iterator[None]:
     """Style of every picture, whatever the user's own matplotlib settings."""
-    with style.context(["default", _STYLE]):
+    with style.context(["default", Path(__file__).parent / "static" / "trajgap.mplstyle"]):
         yield
 
 
@@ -144,9 +102,16 @@ def shown(text: str, width: int | None = None, lines: int = 1) -> str:
     return "\n".join(wrapped or [""])
 
 
-def finish(figure: Picture, note: str = "") -> None:
-    """Write the picture's title and a note below the panels, and settle the layout."""
-    figure.suptitle(shown(figure.title, 105, 2), x=0.005, ha="left", fontsize=11, weight="bold")
+def series(at: int) -> tuple[str, Line]:
+    """Colour and line style of an algorithm; nine are told apart, without colour too."""
+    colours = BLUE, ORANGE, GREEN, PURPLE, SKY, INK, MUTED, INK, MUTED
+    lines: tuple[Line, ...] = "-", "--", "-.", ":", "-", "-.", "--", ":", "-"
+    return colours[at % len(colours)], lines[at % len(lines)]
+
+
+def finish(figure: Picture, note: str = "", width: int = 105) -> None:
+    """Write title and note, the title in so many characters a line, and settle the layout."""
+    figure.suptitle(shown(figure.title, width, 2), x=0.005, ha="left", fontsize=11, weight="bold")
     if note:
         figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
     for axes in figure.axes:
@@ -170,10 +135,42 @@ def _settle_titles(axes: Axes) -> None:
         axes.set_title("", loc="center", y=1.0)  # the height of one settles those beside it
 
 
-def light_grid(axes: Axes, which: str = "both") -> None:
+def light_grid(axes: Axes, which: Literal["both", "x", "y"] = "both") -> None:
     """Draw thin grid lines behind everything else of one panel."""
-    axes.grid(True, axis=which)  # type: ignore[arg-type]
+    axes.grid(True, axis=which)
     axes.set_axisbelow(True)
+
+
+def name_rows(axes: Axes, names: Sequence[str], below: float, above: float = 0.6) -> None:
+    """Name the rows of a panel from the top, with room below and above in units of a row."""
+    axes.set_yticks(range(len(names)), names)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(len(names) - 1 + below, -above)
+    axes.spines["left"].set_visible(False)
+
+
+def hollow(size: float, edge: str = INK, face: str = PAPER) -> Style:
+    """Style of points that a picture tells from filled ones."""
+    return {
+        "linestyle": "none",
+        "marker": "o",
+        "markersize": size,
+        "markerfacecolor": face,
+        "markeredgecolor": edge,
+    }
+
+
+def gap_scale(axis: Axis, top: float, linear: float, low: float | None = None) -> None:
+    """Name gaps in percent by decades, from the end of the linear part of an axis to its top.
+
+    `low`: smallest gap of an axis that also has 0 and, below it, the same decades.
+    """
+    decades = [10.0**k for k in range(round(math.log10(linear)), 1 + math.floor(math.log10(top)))]
+    ticks = list(decades)
+    if low is not None:
+        ticks = [*(-t for t in reversed(decades) if t <= -low), 0.0, *decades]
+    axis.set_ticks(ticks, labels=[two_digits(t) for t in ticks])
+    axis.axes.minorticks_off()
 
 
 def _xml(text: str) -> str:
@@ -238,6 +235,11 @@ def svg(figure: Figure) -> str:
     return text[: opening.start()] + tag + f"\n {words}" + text[opening.end() :]
 
 
+def drawn(picture: Picture, *name: str, caption: str = "", inside: bool = False) -> Drawn:
+    """A picture as a block, under a name that is unique in its page."""
+    return Drawn(file_name(*name), svg(picture), picture.title, caption, inside)
+
+
 def picture_bytes(figure: Figure, kind: str) -> bytes:
     """Render a figure as the content of a file, the same bytes each time.
 
@@ -248,7 +250,8 @@ def picture_bytes(figure: Figure, kind: str) -> bytes:
     buffer = io.BytesIO()
     dated = {"CreationDate": None} if kind == "pdf" else {}
     with drawing():
-        figure.savefig(buffer, format=kind, dpi=_DOTS, metadata=dated)
+        # 150 dots an inch: small type of a PNG is sharp on a screen and in print.
+        figure.savefig(buffer, format=kind, dpi=150, metadata=dated)
     return buffer.getvalue()
 
 

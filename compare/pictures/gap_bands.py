@@ -1,4 +1,4 @@
-"""Pictures of a bench: gaps over evaluations, targets reached, and where runs end."""
+"""Pictures against the optimum: gaps of runs, and totals as bars by step and by paper."""
 
 from __future__ import annotations
 
@@ -10,31 +10,33 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ...nlp import Evidence
 from ...problem import Array, TrajgapError
+from ..documents import Step, Waterfall, Why, two_digits, value_or_none
 from .drawing import (
+    BLUE,
     GRID,
     INK,
     MUTED,
-    SERIES,
-    SKY,
+    ORANGE,
+    PAPER,
+    RED,
     Line,
     Picture,
+    Style,
     drawing,
     finish,
+    gap_scale,
     light_grid,
+    name_rows,
+    series,
     shown,
 )
 
 _LINEAR = 1e-4
 """Gaps up to this many percent stand on a linear scale: a millionth, a solver's accuracy."""
-_TICKS = (1e-4, 1e-3, 0.01, 0.1, 1.0, 10.0, 100.0, 1000.0)
-"""Gaps in percent that the axis may name: decades from the end of the linear part."""
 _LARGEST = 100.0
 """Percent up to which gaps are drawn: first positions may be many times the optimum."""
-_STYLES: tuple[tuple[str, Line], ...] = (
-    *SERIES, (SKY, "-"), (INK, "-."), (MUTED, "--"), (INK, ":"), (MUTED, "-"),
-)  # fmt: skip
-"""Colour and line style of the optimisers, in order; from the tenth on they come again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +54,20 @@ class Anytime:
     """Share of pairs of run and target that are reached, from each step on."""
     runs: int
 
+    @property
+    def described(self) -> str:
+        """Where its runs end, in words."""
+        last = 100 * self.gaps[:, -1]
+        if not np.isfinite(last[1]):
+            return f"{self.label}: half of its {self.runs} runs or more find no feasible answer"
+        upper = f"{last[2]:.3g}" if np.isfinite(last[2]) else "no answer"
+        reached = f"{100 * self.shares[-1]:.0f}" if self.shares.size else "0"
+        return (
+            f"{self.label}: {self.runs} run{'s end' if self.runs > 1 else ' ends'} {last[1]:.3g} % "
+            f"above the optimum in the median, quartiles {last[0]:.3g} and {upper} %; {reached} % "
+            "of its (run, target) pairs are reached"
+        )
+
 
 def gap_picture(
     optimisers: Sequence[Anytime],
@@ -63,26 +79,24 @@ def gap_picture(
 ) -> Picture:
     """Anytime gap of each optimiser with its quartiles, and the share of targets reached.
 
-    Two panels over evaluations on a logarithmic axis. `optimisers`: their order determines colours
-    and line styles. `uncertainty`: relative width of the optimum's certified interval, drawn below
-    zero; None if no lower bound is certified. `budget`: evaluations of a run. `targets`: how many
-    gaps from 100 % to 0.0001 % each run was asked for.
+    `optimisers`: their order determines colours and line styles. `uncertainty`: relative width of
+    the optimum's certified interval, drawn below zero; None if no lower bound is certified.
+    `budget`: evaluations of a run. `targets`: how many gaps from 100 % to 0.0001 % each run was
+    asked for.
     """
     if not optimisers:
         raise TrajgapError("gap bands: no runs to draw")
-    description = "; ".join(_words(one) for one in optimisers)
+    description = "; ".join(one.described for one in optimisers)
     rows = -(-(len(optimisers) + 2) // 3)
     with drawing():
         figure = Picture(title, description, 9.6, 4.2 + 0.22 * rows)
         bands, shares = figure.subplots(1, 2, width_ratios=(1.25, 1))
-        styles = [_STYLES[i % len(_STYLES)] for i in range(len(optimisers))]
-        for one, (colour, line) in zip(optimisers, styles, strict=True):
-            _band(bands, one, colour, line)
-            steps = np.concatenate([one.steps, [budget]])
-            reached = np.concatenate([one.shares, one.shares[-1:] if one.shares.size else [0.0]])
-            shares.plot(steps, 100 * reached, color=colour, linestyle=line, drawstyle="steps-post")
-        _gap_axis(bands, optimisers, uncertainty, budget)
-        shares.set_ylim(0, 103)
+        for k, one in enumerate(optimisers):
+            colour, line = series(k)
+            label = f"{shown(one.label, 34)}, {one.runs} run{'s'[: one.runs > 1]}"
+            quartile_band(bands, one.evaluations, 100 * one.gaps, colour, line, label)
+            _share_line(shares, one.steps, one.shares, budget, colour, line)
+        _gap_axis(bands, optimisers, uncertainty)
         shares.set_ylabel("(run, target) pairs reached, %")
         shares.set_title(f"{targets} targets from 100 % to 0.0001 % for each run")
         for axes in (bands, shares):
@@ -92,86 +106,53 @@ def gap_picture(
             axes.set_xticks(decades, [f"{decade:,}" for decade in decades])
             axes.set_xlabel("evaluations")
             light_grid(axes)
-        figure.legend(
-            *_legend(optimisers, styles, uncertainty), loc="outside lower left", ncols=3,
-            handlelength=3.0,
-        )  # fmt: skip
+        figure.legend(loc="outside lower left", ncols=3, handlelength=3.0)
         finish(figure)
     return figure
 
 
-def _band(axes: Axes, one: Anytime, colour: str, line: Line) -> None:
-    percent = 100 * one.gaps
-    # A quartile that is infinite has no place on the axis; the others of that moment do.
-    lower, middle = np.where(np.isfinite(percent[:2]), percent[:2], np.nan)
-    top = np.where(np.isfinite(percent[2]), percent[2], 10 * _LARGEST)
-    axes.fill_between(
-        one.evaluations, lower, top, where=np.isfinite(lower), step="post", color=colour,
-        alpha=0.16, linewidth=0,
-    )  # fmt: skip
-    axes.plot(
-        one.evaluations, middle, color=colour, linestyle=line, linewidth=1.7,
-        drawstyle="steps-post",
-    )  # fmt: skip
-
-
-def _gap_axis(
-    axes: Axes, optimisers: Sequence[Anytime], uncertainty: float | None, budget: int
+def quartile_band(
+    axes: Axes, x: Array, percent: Array, colour: str, line: Line, label: str
 ) -> None:
+    """Draw the median of runs and the band of their quartiles, `percent` of shape (3, points).
+
+    An infinite quartile has no place on the axis: the band is open above, and a line ends.
+    """
+    lower, middle = np.where(np.isfinite(percent[:2]), percent[:2], np.nan)
+    top = np.where(np.isfinite(percent[2]), percent[2], 1e9)
+    axes.fill_between(
+        x, lower, top, where=np.isfinite(lower), step="post", color=colour, alpha=0.16, linewidth=0
+    )
+    axes.plot(
+        x, middle, drawstyle="steps-post", color=colour, linestyle=line, linewidth=1.7, label=label
+    )
+
+
+def _share_line(axes: Axes, x: Array, shares: Array, end: float, colour: str, line: Line) -> None:
+    """Draw a share in percent that holds from each place on, as far as the end of the axis."""
+    x = np.concatenate([x, [end]])
+    y = 100 * np.concatenate([shares, shares[-1:] if shares.size else [0.0]])
+    axes.plot(x, y, color=colour, linestyle=line, drawstyle="steps-post")
+    axes.set_ylim(0, 103)
+
+
+def _gap_axis(axes: Axes, optimisers: Sequence[Anytime], uncertainty: float | None) -> None:
     ends = np.concatenate([100 * one.gaps.ravel() for one in optimisers])
     good = ends[np.isfinite(ends)]
     low = min(0.0, float(good.min())) if good.size else 0.0
     high = min(_LARGEST, float(good.max())) if good.size else 1.0
-    axes.axhline(0.0, color=INK, linewidth=1.3)
+    known = "optimum" if uncertainty is not None else "best known, no lower bound proved"
+    axes.axhline(0.0, color=INK, linewidth=1.3, label=known)
     if uncertainty:
         width = 100 * uncertainty
-        axes.axhspan(-width, 0.0, facecolor=GRID, linewidth=0, zorder=0)
+        label = f"interval of the optimum: {two_digits(width)} %"
+        axes.axhspan(-width, 0.0, facecolor=GRID, linewidth=0, zorder=0, label=label)
         low = min(low, -width)
     axes.set_yscale("symlog", linthresh=_LINEAR, linscale=0.4)
-    ticks = sorted(
-        [t for t in _TICKS if t <= 1.01 * high] + [-t for t in _TICKS if t <= -low] + [0.0]
-    )
-    axes.set_yticks(ticks, [_plain(t) for t in ticks])
-    axes.minorticks_off()
+    gap_scale(axes.yaxis, 1.01 * max(high, _LINEAR), _LINEAR, low)
     axes.set_ylim(min(1.6 * low, -0.4 * _LINEAR), 1.3 * max(high, _LINEAR))
     axes.set_ylabel("gap of best so far, %")
     axes.set_title("median and quartiles over the runs")
-
-
-def _plain(tick: float) -> str:
-    """Percent without an exponent, two digits that count."""
-    text = np.format_float_positional(tick, precision=2, fractional=False, trim="-")
-    return text.replace("-", "−")
-
-
-def _legend(
-    optimisers: Sequence[Anytime],
-    styles: Sequence[tuple[str, Line]],
-    uncertainty: float | None,
-) -> tuple[list[Line2D | Patch], list[str]]:
-    handles: list[Line2D | Patch] = [
-        Line2D([], [], color=colour, linestyle=line, linewidth=1.7) for colour, line in styles
-    ]
-    labels = [f"{shown(one.label, 34)}, {one.runs} run{'s'[: one.runs > 1]}" for one in optimisers]
-    handles.append(Line2D([], [], color=INK, linewidth=1.3))
-    labels.append("optimum" if uncertainty is not None else "best known, no lower bound proved")
-    if uncertainty:
-        handles.append(Patch(facecolor=GRID))
-        labels.append(f"interval of the optimum: {_plain(100 * uncertainty)} %")
-    return handles, labels
-
-
-def _words(one: Anytime) -> str:
-    last = 100 * one.gaps[:, -1]
-    if not np.isfinite(last[1]):
-        return f"{one.label}: half of its {one.runs} runs or more find no feasible answer"
-    upper = f"{last[2]:.3g}" if np.isfinite(last[2]) else "no answer"
-    reached = f"{100 * one.shares[-1]:.0f}" if one.shares.size else "0"
-    return (
-        f"{one.label}: {one.runs} run{'s end' if one.runs > 1 else ' ends'} {last[1]:.3g} % above "
-        f"the optimum in the median, quartiles {last[0]:.3g} and {upper} %; {reached} % of "
-        "its (run, target) pairs are reached"
-    )
 
 
 def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) -> Picture:
@@ -185,28 +166,231 @@ def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) 
         "1 % of the optimum"
         for label, (ratios, shares) in profiles.items()
     )
+    edge = _LINEAR / 10  # what is smaller is drawn here
     with drawing():
         figure = Picture(title, description, 9.6, 3.4 + 0.22 * -(-len(profiles) // 3))
         axes = figure.subplots()
-        handles = []
-        for i, (ratios, shares) in enumerate(profiles.values()):
-            colour, line = _STYLES[i % len(_STYLES)]
-            gaps = np.maximum(100 * (ratios - 1), _LINEAR / 10)  # below it all is drawn at the edge
-            x = np.concatenate([[_LINEAR / 10], gaps, [_LARGEST]])
-            y = 100 * np.concatenate([[0.0], shares, shares[-1:] if shares.size else [0.0]])
-            axes.plot(x, y, color=colour, linestyle=line, drawstyle="steps-post")
-            handles.append(Line2D([], [], color=colour, linestyle=line, linewidth=1.7))
+        for k, (label, (ratios, shares)) in enumerate(profiles.items()):
+            x = np.concatenate([[edge], np.maximum(100 * (ratios - 1), edge)])
+            _share_line(axes, x, np.concatenate([[0.0], shares]), _LARGEST, *series(k))
+            axes.lines[-1].set_label(shown(label, 34))
         axes.set_xscale("log")
-        axes.set_xlim(_LINEAR / 10, _LARGEST)
-        ticks = [t for t in _TICKS if t <= _LARGEST]
-        axes.set_xticks(ticks, [_plain(t) for t in ticks])
-        axes.set_ylim(0, 103)
+        gap_scale(axes.xaxis, _LARGEST, _LINEAR)
+        axes.set_xlim(edge, _LARGEST)
         axes.set_xlabel("gap at the end of the run, %; smaller ones at the left edge")
         axes.set_ylabel("runs within it, %")
         light_grid(axes)
-        figure.legend(
-            handles, [shown(label, 34) for label in profiles], loc="outside lower left", ncols=3,
-            handlelength=3.0,
+        figure.legend(loc="outside lower left", ncols=3, handlelength=3.0)
+        finish(figure)
+    return figure
+
+
+@dataclass(frozen=True, eq=False)
+class BoardPanel:
+    """Optimisers of the leaderboard under one handling."""
+
+    title: str
+    marked: dict[str, Array]
+    """Share of runs within each gap, of optimisers that are told apart, by what they are called;
+    shape (gaps,)."""
+    others: Sequence[Array]
+    """Those that are drawn in grey; shape (gaps,)."""
+
+
+def leaderboard_picture(
+    panels: Sequence[BoardPanel], gaps: Sequence[float], *, title: str
+) -> Picture:
+    """Share of runs within each of falling relative gaps, a panel for each handling."""
+    description = "; ".join(
+        f"{panel.title}: {label}, " + ", ".join(
+            f"{100 * share:.0f} % of the runs within {100 * gap:g} %"
+            for gap, share in zip(gaps, shares, strict=True)
+            if gap in (0.01, 1e-4)
+        )
+        for panel in panels
+        for label, shares in panel.marked.items()
+    )  # fmt: skip
+    with drawing():
+        figure = Picture(title, description, 9.6, 5.0)
+        grid = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
+        for axes, panel in zip(grid, panels, strict=True):
+            _board(axes, panel, np.asarray(gaps))
+        grid[0].set_ylabel("runs that come so near, %")
+        finish(figure)
+    return figure
+
+
+def _board(axes: Axes, panel: BoardPanel, gaps: Array) -> None:
+    for at, (label, shares) in enumerate(panel.marked.items()):
+        colour, line = series(at)
+        style: Style = {"color": colour, "linestyle": line, "linewidth": 2.2, "zorder": 3}
+        axes.plot(gaps, 100 * shares, label=shown(label, 52), **style)
+    for at, shares in enumerate(panel.others):
+        named = f"{len(panel.others)} other optimisers" if at == 0 else None
+        axes.plot(gaps, 100 * shares, color=GRID, linewidth=1.0, label=named)
+    axes.set_xscale("log")
+    axes.set_xlim(gaps[0], gaps[-1])
+    ticks = [10.0**k for k in range(0, -7, -1)]
+    axes.set_xticks(ticks, [f"{100 * tick:.10g} %" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_ylim(0, 102)
+    axes.set_xlabel("distance from the certified optimum, at most")
+    axes.set_title(panel.title)
+    light_grid(axes)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.17), handlelength=3.0)
+
+
+_FILLS: dict[Evidence, Style] = {
+    Evidence.CERTIFIED: {"facecolor": BLUE, "edgecolor": BLUE, "hatch": ""},
+    Evidence.BEST_KNOWN: {"facecolor": PAPER, "edgecolor": BLUE, "hatch": "////"},
+    Evidence.UNCONVERGED: {"facecolor": PAPER, "edgecolor": BLUE, "hatch": "...."},
+    Evidence.NONE: {"facecolor": ORANGE, "edgecolor": ORANGE, "hatch": ""},
+}
+"""Fill of a bar by what stands behind its value."""
+_WORDS = {
+    Evidence.CERTIFIED: "certified",
+    Evidence.BEST_KNOWN: "best known",
+    Evidence.UNCONVERGED: "not converged",
+    Evidence.NONE: "printed, or derived from it",
+}
+"""The same in words, for the legend and the description."""
+
+
+def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False) -> Picture:
+    """Bars from 0 with the seconds written on them, one per step.
+
+    Certified values are solid, best known ones hatched; an interval is drawn over its bar; a step
+    without a value says why. `narrow`: for half a page: without steps that have no value, and
+    seconds without their interval.
+    """
+    steps = waterfall.steps
+    if narrow:
+        steps = tuple(s for s in steps if not isinstance(s.time, Why)) or steps
+    # Right edges of the seconds and the percent beside the bars, which end at 1.
+    edges = (1.34, 1.58) if narrow else (1.2, 1.36)
+    width = 6.2 if narrow else 9.6
+    ends = [x for s in steps for x in (s.time, s.high) if not isinstance(x, Why)]
+    top = max(ends, default=1.0) or 1.0
+    description = "; ".join(
+        f"{s.name}: {s.total()}, {s.note if isinstance(s.time, Why) else _WORDS[s.evidence]}"
+        for s in steps
+    )
+    with drawing():
+        figure = Picture(title, description, width, 1.1 + 0.5 * max(1, len(steps)))
+        axes = figure.subplots()
+        for row, step in enumerate(steps):
+            _bar(axes, row, step, top, narrow)
+            axes.axhline(row + 0.5, color=GRID, linewidth=0.6, zorder=0)
+            before = [s.time for s in steps[:row] if not isinstance(s.time, Why)]
+            if not isinstance(step.time, Why) and before:
+                for edge, text in zip(edges, _beside(before[0], step.time), strict=True):
+                    axes.text(edge * top, row, text, va="center", ha="right", fontsize=8)
+        names = [shown(s.name, 24 if narrow else 30, 3) for s in steps]
+        name_rows(axes, names, 0.6, 0.9)
+        axes.set_xlim(0, (edges[-1] + 0.02) * top)
+        axes.spines["bottom"].set_visible(False)
+        axes.set_xticks([])
+        axes.plot([0, 0], [-0.5, len(steps) - 0.5], color=MUTED, linewidth=0.8)
+        heading: Style = {"color": MUTED, "fontsize": 8, "va": "center", "ha": "right"}
+        axes.text(edges[-1] * top, -0.62, "first step relative to this one", **heading)
+        present = [
+            e for e in Evidence if any(s.evidence is e and value_or_none(s.time) for s in steps)
+        ]
+        axes.legend(
+            [Patch(linewidth=0.9, **_FILLS[e]) for e in present], [_WORDS[e] for e in present],
+            loc="upper left", bbox_to_anchor=(0.0, 0.0), ncols=3, handlelength=2.4,
         )  # fmt: skip
+        finish(figure)
+    return figure
+
+
+def _bar(axes: Axes, row: int, step: Step, top: float, narrow: bool) -> None:
+    if isinstance(step.time, Why):
+        note = shown(step.note or "not computed", 100, 2)
+        axes.text(0.015 * top, row, note, color=MUTED, fontsize=8, style="italic", va="center")
+        return
+    axes.barh(row, step.time, height=0.62, linewidth=0.9, **_FILLS[step.evidence])
+    end, low, high = step.time, value_or_none(step.low), value_or_none(step.high)
+    if low is not None and high is not None and high - low > 2e-3 * top:
+        end = max(end, high)
+        axes.plot([low, high], [row, row], color=INK, linewidth=2.2, zorder=4)
+        for x in (low, high):
+            axes.plot([x, x], [row - 0.2, row + 0.2], color=INK, linewidth=1.4, zorder=4)
+    axes.text(
+        0.015 * top if step.time > 0.5 * top else end + 0.015 * top, row,
+        step.total(ends=not narrow), va="center", weight="bold", zorder=5,
+        bbox={"boxstyle": "round,pad=0.25", "facecolor": PAPER, "edgecolor": "none"},
+    )  # fmt: skip
+
+
+def _beside(first: float, time: float) -> tuple[str, str]:
+    """How much longer the first step takes than another one, in seconds and in percent of it."""
+    if abs(first - time) <= 5e-5 * min(1.0, time):
+        return "0 s", "0 %"
+    apart = f"{first - time:+.4f} s".replace("-", "−")
+    if time <= 0:  # where nothing limits the total; it has no multiples
+        return apart, ""
+    many = first / time  # beyond eleven times, a multiple says more than a percentage
+    return apart, f"{many:.1f} ×" if many > 11 else f"{100 * (many - 1):+.1f} %".replace("-", "−")
+
+
+@dataclass(frozen=True)
+class PaperBar:
+    """One paper: what its printed total is of the optimum."""
+
+    label: str
+    lowest: float
+    highest: float
+    """Printed total over the optimum; an interval where the optimum is one."""
+    said: str
+    """The distance in words."""
+    proven: bool
+    """Whether the optimum is certified."""
+    sure: bool = True
+    """Whether the distance holds however the digits were rounded."""
+
+
+def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
+    """A bar for each paper, from its optimum at the left to its printed total.
+
+    On a logarithmic axis, so no bar is cut.
+    """
+    description = "; ".join(f"{one.label}: {one.said}" for one in bars)
+    # Twice the longest bar: room for its words.
+    top = 2.0 * max([one.highest for one in bars], default=1.0)
+    with drawing():
+        figure = Picture(title, description, 9.6, 1.3 + 0.42 * max(1, len(bars)))
+        axes = figure.subplots()
+        axes.set_xscale("log")
+        axes.axvline(1.0, color=INK, linewidth=1.3)
+        for row, one in enumerate(bars):
+            axes.axhline(row, color=GRID, linewidth=0.6, zorder=0)
+            fill = RED if one.sure else PAPER
+            axes.barh(row, one.highest - 1.0, 0.3, 1.0, facecolor=fill, edgecolor=RED)
+            if one.highest > one.lowest:  # the optimum is an interval, and so is the distance
+                axes.plot([one.lowest] * 2, [row - 0.3, row + 0.3], color=INK, linewidth=1.2)
+            marker = "o" if one.proven else "D"
+            axes.plot([1.0], [row], marker=marker, color=BLUE, markersize=6, zorder=3)
+            axes.annotate(
+                shown(one.said, 46), (one.highest, row), (7, 0), textcoords="offset points",
+                va="center", weight="bold",
+            )  # fmt: skip
+        name_rows(axes, [shown(one.label, 34) for one in bars], 0.5)
+        axes.set_xlim(top**-0.02, top)
+        named = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+        ticks = [one for one in named if one < top]
+        axes.set_xticks(ticks, [f"{one:g} ×" if one > 1 else "optimum" for one in ticks])
+        axes.minorticks_off()
+        said = (
+            "printed total over the shortest known: first problem, default reading, printed digits"
+        )
+        axes.set_xlabel(said, color=MUTED)
+        signs = {
+            "optimum, proven": Line2D([], [], color=BLUE, marker="o", linestyle=""),
+            "best known, no proof": Line2D([], [], color=BLUE, marker="D", linestyle=""),
+            "printed total above it": Patch(facecolor=RED, edgecolor=RED),
+            "the same, but rounding may explain it": Patch(facecolor=PAPER, edgecolor=RED),
+        }
+        figure.legend(list(signs.values()), list(signs), loc="outside lower left", ncols=4)
         finish(figure)
     return figure

@@ -1,6 +1,9 @@
-"""Pictures of a motion: angle and derivatives over time, with limits, peaks and way-points."""
+"""Pictures of a motion over time: one of ours, or one from elsewhere, with limits and peaks."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,12 +17,39 @@ from ...problem import (
     TrajgapError,
     extrema,
     fit,
+    half_range,
+    is_linear,
 )
-from ...problem.motions import ORDERS
+from ...problem.motions import (
+    BRAKING,
+    ORDERS,
+    JointLimits,
+    Motion,
+    MotionCheck,
+    Samples,
+    factors_of,
+    neighbours,
+)
 from ..documents import si_unit
-from .drawing import INK, RED, Picture, shown
-from .panels import Line, Mark, Unit, Units, panels_picture
-from .traced import beyond, sampled
+from .drawing import INK, ORANGE, RED, Picture, shown
+from .panels import (
+    HUGE,
+    POINTS,
+    Line,
+    Mark,
+    Stretches,
+    Unit,
+    Units,
+    beyond,
+    joined_stretches,
+    panels_picture,
+    sampled,
+    thinned,
+    without,
+)
+
+_FEW = 60
+"""Samples or pieces of which each is marked: more would hide the curve."""
 
 
 def motion_picture(
@@ -49,7 +79,8 @@ def motion_picture(
             f"({joints}, {problem.segments}), got {h.shape}"
         )
     if h.ndim == 1:
-        motion = fit(problem.curve, problem.waypoints, h, _array(nodal))
+        free = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+        motion = fit(problem.curve, problem.waypoints, h, free)
         rows = [(motion, j) for j in range(joints)]
     else:
         rows = [
@@ -74,28 +105,24 @@ def shown_in(units: Units | None, problem: Problem, joint: int, quantity: str) -
     return own or (si_unit(quantity, problem.linear[joint]), 1.0)
 
 
-def _array(values: ArrayLike | None) -> Array | None:
-    return None if values is None else np.asarray(values, dtype=np.float64)
-
-
-def _limits_of(problem: Problem, joint: int, order: int) -> tuple[float, float]:
-    limits = problem.limits
-    if order == 0:
-        return float(limits.position_lower[joint]), float(limits.position_upper[joint])
-    below, above = limits.sides[:, joint, order - 1].tolist()
-    return -below, above
-
-
 def _line(
     problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int, unit: Unit
 ) -> Line:
-    low, high = _limits_of(problem, joint, order)
+    limits = problem.limits
+    if order:
+        low, high = (limits.sides[:, joint, order - 1] * (-1, 1)).tolist()
+    else:
+        low, high = float(limits.position_lower[joint]), float(limits.position_upper[joint])
     times, values = sampled(trajectory, column, order)
     own = np.empty(0), np.empty(0)
     marks = []
     if order:
         top = max(extrema(trajectory, column, order), key=lambda e: abs(e.value))
-        marks.append(_largest(top.time, top.value, low, high))
+        limit = low if top.value < 0 else high  # on its side
+        ratio = top.value / limit if limit else np.inf
+        broken = abs(top.value) > abs(limit) * (1 + TOLERANCE)
+        colour = RED if broken else INK
+        marks.append(Mark(top.time, top.value, limit, ratio, low == -high, colour))
     else:
         at = trajectory.breaks[list(problem.curve.waypoint_breaks)]
         own = at, problem.waypoints[:, joint]
@@ -114,9 +141,185 @@ def _line(
     )
 
 
-def _largest(time: float, value: float, low: float, high: float) -> Mark:
-    """The largest value beside the limit on its side."""
-    limit = low if value < 0 else high
-    ratio = value / limit if limit else np.inf
-    broken = abs(value) > abs(limit) * (1 + TOLERANCE)
-    return Mark(time, value, limit, ratio, low == -high, RED if broken else INK)
+def checked_picture(
+    content: Motion | Samples,
+    limits: JointLimits,
+    found: MotionCheck,
+    *,
+    title: str,
+    units: Sequence[str] = ("rad",),
+) -> Picture:
+    """Position, velocity, acceleration and jerk of a motion from elsewhere, one row per joint.
+
+    Limits are dashed. Red is what surely breaks a limit, or jumps; orange is what may break one, by
+    what the numbers may be off by. `content`: of samples, dots show what neighbours prove; nothing
+    is drawn between them. `limits`: for the same joints in the same order. `found`: the verdict on
+    this motion, or on every motion through these samples. `units`: of positions, one for all joints
+    or one each: rad, deg, m, cm or mm.
+    """
+    each = [*units] * (len(content.joints) if len(units) == 1 else 1)
+    factors = factors_of(units, len(content.joints), "units").tolist()
+    rows = []
+    for j, (unit, factor) in enumerate(zip(each, factors, strict=True)):
+        row = _Row(content.joints[j], j, limits, found, unit, factor)
+        if isinstance(content, Samples):
+            rows.append([row.dots(content, r) for r in range(4)])
+        else:
+            # Turning points of one joint at a time: those of all would fill the memory.
+            alone = np.ascontiguousarray(content.scaled[:, :, j : j + 1])
+            degrees = (content.scaled.shape[1] - 1,) * content.pieces
+            trajectory = Trajectory(content.durations, alone, degrees)
+            rows.append([row.curve(content, trajectory, r) for r in range(4)])
+    if isinstance(content, Samples):
+        of, times, points = "every motion through the samples", content.time, "○ sample"
+    else:
+        of, times, points = "for all t", content.breaks, "○ point of the file"
+    span = float(times[0]), float(times[-1])
+    note = f"   ·   {of}: {found.verdict}"
+    signs = (points, "● nearest to a limit") if times.size <= _FEW else ("● nearest to a limit",)
+    return panels_picture(rows, title, signs, note, span)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """One joint: its limits, what was found of it, and its unit."""
+
+    label: str
+    joint: int
+    limits: JointLimits
+    found: MotionCheck
+    unit: str
+    factor: float
+
+    def curve(self, motion: Motion, trajectory: Trajectory, order: int) -> Line:
+        """A derivative of a motion that is known for all t."""
+        start = float(motion.breaks[0])
+        times, values = sampled(trajectory, 0, order)
+        error = motion.error[:, order, self.joint]
+        low, high, braking = self._kept(order)
+        broken, unsure = (
+            [
+                (start + t0, start + t1)
+                for t0, t1 in beyond(trajectory, 0, order, low, high, slack, braking)
+            ]
+            for slack in (error, -error)
+        )
+        few = motion.breaks.size <= _FEW
+        ends = np.append(trajectory.derivatives(0)[0, :, 0], trajectory.edges(0)[1][-1, 0])
+        jumps = [
+            one.time
+            for one in self.found.jumps
+            if (one.joint, one.quantity) == (self.label, ORDERS[order]) and self._serious(order)
+        ]
+        return self._line(
+            order,
+            (start + times, values),
+            broken=[*broken, *((time, time) for time in jumps)],
+            unsure=without(unsure, broken, self.found.total_time / POINTS),
+            points=(motion.breaks, ends) if few and order == 0 else None,
+            breaks=motion.breaks if few else None,
+            jumps=bool(jumps),
+        )
+
+    def dots(self, samples: Samples, order: int) -> Line:
+        """What samples prove of a derivative; nothing if they are too inexact for the limit."""
+        times, values, errors = (
+            one if one.ndim == 1 else one[:, self.joint] for one in neighbours(samples, order)
+        )
+        low, high, braking = self._kept(order)
+        if np.isfinite(braking):
+            low, high = min(low, -braking), max(high, braking)
+        sizes = [abs(x) for x in (low, high) if np.isfinite(x)]
+        told = np.isfinite(values)
+        if sizes and order:
+            told &= errors <= max(sizes)
+        times, values = times[told], values[told]
+        errors = np.nan_to_num(errors[told], nan=HUGE, posinf=HUGE)
+        gap = (samples.time[-1] - samples.time[0]) / POINTS
+        broken, unsure = (
+            joined_stretches(
+                [(t, t) for t in times[(values < low - slack) | (values > high + slack)].tolist()],
+                gap,
+            )
+            for slack in (errors, -errors)
+        )
+        points = (samples.time, samples.position[:, self.joint])
+        return self._line(
+            order,
+            thinned(times, values),
+            broken=broken,
+            unsure=without(unsure, broken, self.found.total_time / POINTS),
+            points=points if samples.time.size <= _FEW and order == 0 else None,
+            dots=True,
+        )
+
+    def _line(
+        self,
+        order: int,
+        curve: tuple[Array, Array],
+        *,
+        broken: Stretches,
+        unsure: Stretches,
+        points: tuple[Array, Array] | None,
+        breaks: Array | None = None,
+        jumps: bool = False,
+        dots: bool = False,
+    ) -> Line:
+        none = np.empty(0)
+        unit = (self.unit + ("", "/s", "/s²", "/s³")[order], self.factor)
+        braking = float(self.limits.deceleration[self.joint]) if order == 2 else np.inf
+        return Line(
+            joint=self.label,
+            quantity=ORDERS[order],
+            linear=is_linear(self.unit),
+            unit=unit,
+            times=curve[0],
+            values=curve[1],
+            limits=(*self._range(order), -braking, braking),
+            marks=self._marks(order, curve),
+            points=(none, none) if points is None else points,
+            breaks=none if breaks is None else breaks,
+            broken=broken,
+            unsure=unsure,
+            jumps=jumps,
+            dots=dots,
+        )
+
+    def _range(self, order: int) -> tuple[float, float]:
+        return (
+            float(self.limits.lower[self.joint, order]),
+            float(self.limits.upper[self.joint, order]),
+        )
+
+    def _kept(self, order: int) -> tuple[float, float, float]:
+        """What counts as kept: the range with its tolerance, and the limit of a deceleration."""
+        low, high = self._range(order)
+        tolerance = self.found.tolerance
+        spare = [tolerance * abs(x) if np.isfinite(x) else 0.0 for x in (low, high)]
+        if order == 0:
+            spare = [
+                tolerance * half_range(low, high, x) if np.isfinite(x) else 0.0 for x in (low, high)
+            ]
+        braking = float(self.limits.deceleration[self.joint]) if order == 2 else np.inf
+        return low - spare[0], high + spare[1], braking * (1 + tolerance)
+
+    def _serious(self, order: int) -> bool:
+        """Whether a jump is a fault: that of an acceleration only if jerk is limited."""
+        return order < 2 or bool(np.isfinite(self._range(3)).any())
+
+    def _marks(self, order: int, curve: tuple[Array, Array]) -> list[Mark]:
+        """Where the derivative comes nearest to its limits, or its largest value without one."""
+        names = (ORDERS[order], BRAKING) if order == 2 else (ORDERS[order],)
+        peaks = [p for p in self.found.peaks if p.joint == self.label and p.quantity in names]
+        low, high = self._range(order)
+        both = low == -high and len(peaks) < 2
+        kept = 1 + self.found.tolerance
+        marks = []
+        for one in sorted(peaks, key=lambda p: -p.ratio):
+            colour = RED if one.least_ratio > kept else ORANGE if one.most_ratio > kept else INK
+            marks.append(Mark(one.time, one.value, one.limit, one.ratio, both, colour))
+        times, values = curve
+        if not marks and times.size:
+            k = int(np.nanargmax(np.abs(values)))
+            marks.append(Mark(float(times[k]), float(values[k]), np.inf, 0.0, False))
+        return marks

@@ -1,30 +1,175 @@
-"""The panels of a motion: one row for each joint, and a column for each derivative."""
+"""Curves over time: points and stretches beyond limits, in a panel for each quantity of a joint."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from ...problem import Array
-from .drawing import BLUE, GRID, INK, ORANGE, PAPER, RED, Picture, drawing, finish, shown
-from .traced import Stretches
+from ...problem import TOLERANCE, Array, Trajectory, extrema
+from .drawing import BLUE, GRID, INK, ORANGE, RED, Picture, Style, drawing, finish, hollow, shown
+
+POINTS = 480
+"""Points of a curve of many segments, extrema apart: more than a panel has pixels."""
+HUGE = 1e300
+"""What stands for an error of which nothing is known: beyond every limit."""
+Stretches = Sequence[tuple[float, float]]
+"""Starts and ends, s."""
+
+
+def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Array]:
+    """Times and values, with the exact extrema among them and a gap where the curve jumps.
+
+    Shape (samples,): s and rad/sᵒʳᵈᵉʳ (m/sᵒʳᵈᵉʳ of a joint that slides); a value is NaN at a jump.
+    If there are more pieces than a panel has pixels, only the exact extrema. `column, order`: joint
+    and derivative.
+    """
+    if len(trajectory.durations) > POINTS:
+        places, found = (one[:, :, column] for one in trajectory.turns(order))
+        clock = trajectory.times(np.arange(places.shape[1]), places)
+        known = ~np.isnan(found.T)
+        return thinned(clock.T[known], found.T[known])
+    times: list[Array] = []
+    values: list[Array] = []
+    count = max(8, min(48, POINTS // len(trajectory.durations)))
+    turning = extrema(trajectory, column, order)
+    scale = max(abs(e.value) for e in turning) or 1.0
+    for k, start in enumerate(trajectory.breaks[:-1]):
+        own = [e.s for e in turning if e.segment == k]
+        s = np.unique(np.concatenate([np.linspace(0.0, 1.0, count + 1), own]))
+        v = trajectory.values(k, column, order, s)
+        if values and abs(values[-1][-1] - v[0]) > 1e-6 * scale:
+            times.append(np.array([start]))
+            values.append(np.array([np.nan]))
+        times.append(trajectory.times(k, s))
+        values.append(v)
+    return np.concatenate(times), np.concatenate(values)
+
+
+def thinned(times: Array, values: Array) -> tuple[Array, Array]:
+    """The least and the largest of the values that share a pixel, in order of time."""
+    if values.size <= 2 * POINTS:
+        return times, values
+    edges = np.linspace(0, values.size, POINTS + 1).astype(np.int64)
+    kept = [
+        place
+        for first, last in pairwise(edges.tolist())
+        for place in (
+            first + int(values[first:last].argmin()),
+            first + int(values[first:last].argmax()),
+        )
+    ]
+    at = np.unique([0, *kept, values.size - 1])
+    return times[at], values[at]
+
+
+def beyond(
+    trajectory: Trajectory,
+    column: int,
+    order: int,
+    low: float,
+    high: float,
+    slack: Array | float | None = None,
+    braking: float = np.inf,
+) -> Stretches:
+    """Stretches of time in which a derivative lies beyond its limits, from exact crossings.
+
+    Start and end, s; stretches that touch are joined. If there are more pieces than pixels, pieces
+    shorter than a pixel count in whole, and shorter gaps are closed. `column, order`: joint and
+    derivative. `low, high`: limits in rad/sᵒʳᵈᵉʳ or m/sᵒʳᵈᵉʳ. `slack`: shape (pieces,), an excess
+    up to this does not count; by default the checker's relative tolerance. A negative one counts
+    what stays within the limits by less than its size. `braking`: limit of an acceleration while
+    the speed falls, where it has one of its own.
+    """
+    durations, total = trajectory.durations, trajectory.total_time
+    if slack is None:
+        slack = TOLERANCE * max((abs(x) for x in (low, high) if np.isfinite(x)), default=0.0)
+    # Where nothing is known of an error, infinity less infinity would be no number.
+    slacks = np.broadcast_to(np.clip(slack, -HUGE, HUGE), durations.shape)
+    values = trajectory.turns(order)[1][:, :, column]
+    lowest, highest = np.nanmin(values, axis=0), np.nanmax(values, axis=0)
+    some = (lowest < max(low, -braking) - slacks) | (highest > min(high, braking) + slacks)
+    pixel = total / POINTS if len(durations) > POINTS else 0.0
+
+    def held(k: int, place: float) -> tuple[float, float]:
+        """The range on a piece, around a place between roots of the speed."""
+        if np.isinf(braking):
+            return low - slacks[k], high + slacks[k]
+        forth = trajectory.values(k, column, 1, np.array([place]))[0] >= 0
+        least, most = (-braking, high) if forth else (low, braking)
+        return least - slacks[k], most + slacks[k]
+
+    found: list[tuple[float, float]] = []
+    for k in np.nonzero(some)[0].tolist():
+        if durations[k] < pixel:
+            least, most = held(k, 0.5)
+            if lowest[k] < least or highest[k] > most:
+                found.append((float(trajectory.breaks[k]), float(trajectory.breaks[k + 1])))
+            continue
+        sides = np.array([low, -braking]) - slacks[k], np.array([high, braking]) + slacks[k]
+        levels = [
+            trajectory.level(k, column, order, x)
+            for x in np.unique(sides).tolist()
+            if np.isfinite(x)
+        ]
+        if np.isfinite(braking):
+            levels.append(trajectory.level(k, column, 1, 0.0))
+        for s0, s1 in pairwise([0.0, *sorted(_roots(levels)), 1.0]):
+            middle = (s0 + s1) / 2
+            least, most = held(k, middle)
+            value = float(trajectory.values(k, column, order, np.array([middle]))[0])
+            if s1 > s0 and not least <= value <= most:
+                t0, t1 = map(float, trajectory.times(k, np.array([s0, s1])))
+                found.append((t0, t1))
+    return joined_stretches(found, max(pixel, 1e-12 * total))
+
+
+def _roots(polynomials: Sequence[Array]) -> Iterator[float]:
+    """Places in (0, 1) at which any of some polynomials vanishes."""
+    for one in polynomials:
+        # Leading coefficients that are lost in the digits of the others would divide them.
+        told = np.nonzero(np.abs(one) > 1e-16 * np.abs(one).max())[0]
+        powers = one[: told[-1] + 1] if told.size else one[:0]
+        for root in np.polynomial.polynomial.polyroots(powers) if powers.size else ():
+            if abs(root.imag) < 1e-9 and 0 < root.real < 1:
+                yield float(root.real)
+
+
+def joined_stretches(found: Stretches, gap: float) -> Stretches:
+    """Stretches in order of time, those joined that are at most a gap apart, s."""
+    joined: list[tuple[float, float]] = []
+    for start, end in found:
+        if joined and start - joined[-1][1] <= gap:
+            joined[-1] = (joined[-1][0], end)
+        else:
+            joined.append((start, end))
+    return joined
+
+
+def without(stretches: Stretches, others: Stretches, least: float) -> Stretches:
+    """What others leave of stretches, both in order of time.
+
+    `least`: what is left beside another stretch counts if it is longer than this, s.
+    """
+    left: list[tuple[float, float]] = []
+    for start, end in stretches:
+        at = start
+        inner = [one for one in others if one[1] >= start and one[0] <= end]
+        for first, last in inner:
+            left += [(at, first)] if first - at > least else []
+            at = max(at, last)
+        left += [(at, end)] if end - at > least or not inner else []
+    return left
+
 
 Unit: TypeAlias = tuple[str, float]
 """The unit as it is written, and how much of SI one of it is."""
 Units: TypeAlias = Mapping[tuple[str, str], Unit]
 """How a quantity of a joint is shown, by the joint's label and the quantity."""
-_BESIDE = 0.02
-"""Share of the time that is left free before and after it: markers at both ends are whole."""
-_OFF_SCALE = 0.12
-"""Share of a limit below which drawing the limit would flatten the curve."""
-_LARGE, _FAR = 1e4, 10.0
-"""Value and ratio to a limit from which on fewer digits are written: they fill the head."""
-_DOTS = {60: 5.0, 10**9: 2.0}
-"""Points of type across the dot of a sample, up to so many samples: many would run together."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +190,11 @@ class Mark:
     def words(self, one: float) -> str:
         """The value, and how much of its limit it is, in a unit that is so much of SI."""
         value = self.value / one
-        text = f"{value:.4f}" if abs(value) < _LARGE else f"{value:.6g}"
+        # Fewer digits of large numbers: they fill the head of a panel.
+        text = f"{value:.4f}" if abs(value) < 1e4 else f"{value:.6g}"
         if np.isfinite(self.limit) and self.limit:
             limit = f"±{abs(self.limit) / one:.5g}" if self.both else f"{self.limit / one:.5g}"
-            places = 2 if abs(self.ratio) < _FAR else 0
+            places = 2 if abs(self.ratio) < 10 else 0
             text += f", {100 * self.ratio:.{places}f} % of {limit}"
         elif np.isfinite(self.limit):
             text += ", limit 0"
@@ -116,7 +262,7 @@ def panels_picture(
         figure = Picture(title, description, 3.3 * many, 0.95 + 1.45 * len(rows))
         # Axes that share one scale ask all others at every turn: each has its own, of one range.
         grid = figure.subplots(len(rows), many, squeeze=False)
-        free = _BESIDE * (span[1] - span[0])
+        free = 0.02 * (span[1] - span[0])  # markers at both ends are whole
         for k, row in enumerate(rows):
             for axes, line in zip(grid[k], row, strict=True):
                 _panel(axes, line)
@@ -136,51 +282,28 @@ def panels_picture(
 def _panel(axes: Axes, line: Line) -> None:
     written, one = line.unit
     times, values = line.times, line.values / one
-    style, dot = ("none", ".") if line.dots else ("-", "none")
-    wide = next(points for most, points in _DOTS.items() if times.size <= most)
+    style: Style = {"linestyle": "-"}
+    if line.dots:  # many would run together
+        style = {"linestyle": "none", "marker": ".", "markersize": 5.0 if times.size <= 60 else 2.0}
     ends = np.tile([0.0, 1.0, np.nan], len(line.breaks))
-    axes.plot(
-        np.repeat(line.breaks, 3),
-        ends,
-        transform=axes.get_xaxis_transform(),
-        color=GRID,
-        linewidth=0.7,
-        zorder=0,
-        scaley=False,
-    )
-    axes.axhline(0.0, color=GRID, linewidth=0.7, zorder=0)
-    axes.plot(
-        times,
-        values,
-        color=BLUE,
-        linewidth=1.4,
-        zorder=2,
-        linestyle=style,
-        marker=dot,
-        markersize=wide,
-    )
+    behind: Style = {"color": GRID, "linewidth": 0.7, "zorder": 0}
+    across = axes.get_xaxis_transform()
+    axes.plot(np.repeat(line.breaks, 3), ends, transform=across, scaley=False, **behind)
+    axes.axhline(0.0, **behind)
+    axes.plot(times, values, color=BLUE, linewidth=1.4, zorder=2, **style)
     size = float(np.nanmax(np.abs(values), initial=0.0))
     near = [x / one for x in line.limits if np.isfinite(x)]
-    drawn = [x for x in near if line.quantity == "position" or size > _OFF_SCALE * abs(x)]
+    # A limit far away would flatten the curve.
+    drawn = [x for x in near if line.quantity == "position" or size > 0.12 * abs(x)]
     for limit in drawn:
         axes.axhline(limit, color=INK, linestyle=(0, (4, 3)), linewidth=0.9, zorder=1)
     for colour, stretches in ((ORANGE, line.unsure), (RED, line.broken)):
+        shade: Style = {"facecolor": colour, "edgecolor": colour, "alpha": 0.22}
         for start, end in stretches:
-            axes.axvspan(
-                start, end, facecolor=colour, edgecolor=colour, alpha=0.22, linewidth=1.0, zorder=1
-            )
+            axes.axvspan(start, end, linewidth=1.0, zorder=1, **shade)
     for start, end in line.broken:
         inside = (times >= start) & (times <= end)
-        axes.plot(
-            times[inside],
-            values[inside],
-            color=RED,
-            linewidth=2.0,
-            zorder=3,
-            linestyle=style,
-            marker=dot,
-            markersize=wide,
-        )
+        axes.plot(times[inside], values[inside], color=RED, linewidth=2.0, zorder=3, **style)
     if line.jumps:
         gaps = np.nonzero(np.isnan(values))[0]
         before, after = values[gaps - 1], values[gaps + 1]
@@ -188,22 +311,17 @@ def _panel(axes: Axes, line: Line) -> None:
         axes.plot(np.repeat(times[gaps], 3), steps.ravel(), color=RED, linewidth=1.4, zorder=3)
     axes.set_ylabel(written)
     if line.points[0].size:
-        axes.plot(
-            line.points[0],
-            line.points[1] / one,
-            linestyle="none",
-            marker="o",
-            markersize=4.5,
-            markerfacecolor=PAPER,
-            markeredgecolor=INK,
-            zorder=4,
-        )
+        axes.plot(line.points[0], line.points[1] / one, zorder=4, **hollow(4.5))
     if line.quantity == "position":
         what = "position" if line.linear else "angle"
         axes.set_title(f"joint {shown(line.joint, 12)}, {what}", weight="bold")
     else:
         axes.set_title(line.quantity)
-    _mark(axes, line)
+    for mark in line.marks:
+        place = [mark.time], [mark.value / one]
+        axes.plot(*place, marker="o", markersize=4.5, color=mark.colour, zorder=5)
+    for mark in line.marks[:1] if line.quantity != "position" else ():
+        axes.set_title(mark.words(one), color=mark.colour, fontsize=8, loc="right")
     marked = [mark.value / one for mark in line.marks]
     reach = [np.nanmin(values, initial=np.inf), np.nanmax(values, initial=-np.inf)]
     extent = np.array([*(reach if values.size else [0.0]), *marked, *drawn])
@@ -211,13 +329,3 @@ def _panel(axes: Axes, line: Line) -> None:
     axes.set_ylim(float(extent.min()) - room, float(extent.max()) + room)
     axes.locator_params(axis="y", nbins=4)
     axes.locator_params(axis="x", nbins=6)
-
-
-def _mark(axes: Axes, line: Line) -> None:
-    one = line.unit[1]
-    for mark in line.marks:
-        place = [mark.time], [mark.value / one]
-        axes.plot(*place, marker="o", markersize=4.5, color=mark.colour, zorder=5)
-    if line.quantity != "position":
-        for mark in line.marks[:1]:
-            axes.set_title(mark.words(one), color=mark.colour, fontsize=8, loc="right")

@@ -1,40 +1,42 @@
-"""Pictures of searches over many seeds: best-so-far over the iterations, and where they end."""
+"""Pictures of runs over many seeds: best-so-far, where they end, and on other instances."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from ...heuristics import JointRuns, Run
 from ...problem import Array, TrajgapError
-from ..documents import PUBLISHED, Gap, Reached, Waterfall
+from ..audits.instances import InstancesResult, distribution, percent_range
+from ..documents import PUBLISHED, Effect, Gap, Reached, Waterfall
 from .drawing import (
     INK,
+    PAPER,
     RED,
-    SERIES,
-    Line,
     Picture,
+    Style,
     drawing,
     finish,
+    gap_scale,
+    hollow,
     light_grid,
+    name_rows,
+    series,
     shown,
 )
+from .gap_bands import quartile_band
 
 Runs = Sequence[Run] | Sequence[JointRuns]
 """Runs of one algorithm: of all joints, or of each joint separately."""
-_DASHES = ((0, (1, 1.5)), (0, (5, 2)), (0, (7, 2, 1, 2)), (0, (3, 1, 1, 1, 1, 1)))
-"""Of the printed totals, in their order; none is a line style of the algorithms."""
 _LINEAR = 0.01
 """Gaps up to this many percent stand on a linear scale, larger ones on a logarithmic one."""
-_INVISIBLE = 0.02
-"""Share of its own height by which a curve may move unseen, so its point is left out."""
-_TICKS = (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0, 10_000.0, 100_000.0)
-"""Gaps in percent that the axis may name: decades from the end of the linear part."""
 _RUNS = 16
 """Runs of an algorithm drawn one by one: more thin lines on top of each other show no more."""
 
@@ -60,7 +62,7 @@ def convergence(
     "2", ... by default.
     """
     panels = _panels(runs)
-    optima = [float(x) for x in np.atleast_1d(np.asarray(optimum, dtype=np.float64))]
+    optima = np.atleast_1d(np.asarray(optimum, dtype=np.float64)).tolist()
     if len(optima) != len(panels):
         raise TrajgapError(
             f"convergence: {len(optima)} optima for {len(panels)} searched problems; give one each"
@@ -68,7 +70,7 @@ def convergence(
     if not min(optima) > 0:
         raise TrajgapError("convergence: the optimum is 0 s, and no gap is a share of it")
     totals = {
-        label: np.broadcast_to(np.asarray(value, dtype=np.float64), (len(panels),))
+        label: np.broadcast_to(np.asarray(value, dtype=np.float64), (len(panels),)).tolist()
         for label, value in printed.items()
     }
     labels = list(joints) or [str(i + 1) for i in range(len(panels))]
@@ -85,9 +87,8 @@ def convergence(
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True)
         for axes in grid.ravel()[len(panels) :]:
             axes.set_visible(False)
-        for i, panel in enumerate(panels):
-            axes = grid.ravel()[i]
-            own = {name: float(value[i]) for name, value in totals.items()}
+        for i, (axes, panel) in enumerate(zip(grid.ravel(), panels, strict=False)):
+            own = {name: value[i] for name, value in totals.items()}
             _panel(axes, panel, optima[i], own, rounding)
             name = f"joint {shown(labels[i], 14)}: " if len(panels) > 1 else ""
             axes.set_title(f"{name}{evidence} optimum {optima[i]:.6f} s", fontsize=8.5)
@@ -96,7 +97,9 @@ def convergence(
                 axes.set_xlabel("iteration")
         for row in grid:
             row[0].set_ylabel("gap of best so far, %")
-        figure.legend(*_legend(runs, printed), loc="outside lower left", ncols=1, handlelength=3.2)
+        handles, names = grid[0, 0].get_legend_handles_labels()
+        said = [_legend_words(name, runs, totals) for name in names]
+        figure.legend(handles, said, loc="outside lower left", ncols=1, handlelength=3.2)
         finish(figure)
     return figure
 
@@ -135,54 +138,37 @@ def _panel(
     rounding: float,
 ) -> None:
     low, high = 0.0, 0.0
-    for (colour, line), (_, traces) in zip(_styles(len(panel)), panel.items(), strict=True):
+    for at, (name, traces) in enumerate(panel.items()):
+        colour, line = series(at)
         gaps = 100 * (traces / optimum - 1)
         iterations = np.arange(gaps.shape[1], dtype=np.float64)
-        axes.add_collection(
-            LineCollection(
-                [_stairs(iterations, g) for g in _drawn(gaps)],
-                colors=colour,
-                linewidths=0.5,
-                alpha=0.28,
-            )
-        )
+        # Drawn one by one are all runs, or some by rank from the best end to the worst.
+        ranks = np.linspace(0, len(gaps) - 1, min(len(gaps), _RUNS)).round().astype(np.intp)
+        chosen = np.argsort(gaps[:, -1], kind="stable")[ranks]
+        curves = [_stairs(iterations, g) for g in gaps[chosen]]
+        axes.add_collection(LineCollection(curves, colors=colour, linewidths=0.5, alpha=0.28))
         # Quantiles that are runs: a run without answer is infinite and can't be averaged.
-        lower, middle, upper = np.quantile(gaps, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
-        shown_band = np.isfinite(upper)
-        axes.fill_between(
-            iterations, lower, upper, where=shown_band, step="post", color=colour, alpha=0.2,
-            linewidth=0,
-        )  # fmt: skip
-        axes.plot(
-            iterations, np.where(np.isfinite(middle), middle, np.nan), drawstyle="steps-post",
-            color=colour, linestyle=line, linewidth=1.8,
-        )  # fmt: skip
+        bands = np.quantile(gaps, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
+        quartile_band(axes, iterations, bands, colour, line, name)
         good = gaps[np.isfinite(gaps)]
         if good.size:
             low, high = min(low, float(good.min())), max(high, float(good.max()))
-    axes.axhline(0.0, color=INK, linewidth=1.3)
-    for dash, value in zip(_dashes(len(printed)), printed.values(), strict=True):
+    # Of the printed totals, in their order; none is a line style of the algorithms.
+    dashes = ((0, (1, 1.5)), (0, (5, 2)), (0, (7, 2, 1, 2)), (0, (3, 1, 1, 1, 1, 1)))
+    for at, (name, value) in enumerate(printed.items()):
+        gap, half = 100 * (value / optimum - 1), 100 * rounding / optimum
+        style: Style = {"color": RED, "linestyle": dashes[at % len(dashes)], "linewidth": 1.3}
+        axes.axhline(gap, label=f"printed: {name}", **style)
         if np.isfinite(value):
-            gap = 100 * (value / optimum - 1)
-            axes.axhline(gap, color=RED, linestyle=dash, linewidth=1.3)
-            half = 100 * rounding / optimum
             axes.axhspan(gap - half, gap + half, facecolor=RED, alpha=0.1, linewidth=0)
             low, high = min(low, gap - half), max(high, gap + half)
+    axes.axhline(0.0, color=INK, linewidth=1.3, label="optimum")
     axes.set_yscale("symlog", linthresh=_LINEAR, linscale=0.5)
-    ticks = [t for t in _TICKS if t <= 3 * high] + [-t for t in _TICKS if t <= -low] + [0.0]
-    axes.set_yticks(sorted(ticks), [f"{t:g}".replace("-", "−") for t in sorted(ticks)])
-    axes.minorticks_off()
-    axes.set_ylim(min(1.6 * low, -0.5 * _LINEAR), 2.0 * max(high, _LINEAR))
+    top = 2.0 * max(high, _LINEAR)
+    gap_scale(axes.yaxis, top, _LINEAR, low)
+    axes.set_ylim(min(1.6 * low, -0.5 * _LINEAR), top)
     axes.set_xlim(0, max(t.shape[1] - 1 for t in panel.values()))
     light_grid(axes, "y")
-
-
-def _drawn(gaps: Array) -> Array:
-    """The runs that are drawn one by one: all, or spread by rank from the best end to the worst."""
-    if len(gaps) <= _RUNS:
-        return gaps
-    ranks = np.linspace(0, len(gaps) - 1, _RUNS).round().astype(np.intp)
-    return gaps[np.argsort(gaps[:, -1], kind="stable")[ranks]]
 
 
 def _stairs(iterations: Array, values: Array) -> Array:
@@ -198,38 +184,25 @@ def _stairs(iterations: Array, values: Array) -> Array:
     corners = [(x[0], y[0])]
     for i in range(1, x.size):
         level = corners[-1][1]
-        if level - y[i] > max(_INVISIBLE * abs(level), _INVISIBLE * _LINEAR):
+        if level - y[i] > max(abs(level), _LINEAR) / 50:
             corners += [(x[i], level), (x[i], y[i])]
     corners += [(x[-1], corners[-1][1]), (x[-1], y[-1])]
     return np.array(corners)
 
 
-def _styles(count: int) -> list[tuple[str, Line]]:
-    return [SERIES[i % len(SERIES)] for i in range(count)]
-
-
-def _dashes(count: int) -> list[tuple[int, tuple[float, ...]]]:
-    return [_DASHES[i % len(_DASHES)] for i in range(count)]
-
-
-def _legend(
-    runs: Mapping[str, Runs], printed: Mapping[str, float | Sequence[float]]
-) -> tuple[list[Line2D], list[str]]:
-    handles, labels = [], []
-    for (colour, line), (name, replays) in zip(_styles(len(runs)), runs.items(), strict=True):
-        handles.append(Line2D([], [], color=colour, linestyle=line, linewidth=1.8))
-        each = "each" if len(replays) <= _RUNS else f"{_RUNS} of them, best and worst included,"
-        labels.append(
-            f"{len(replays)} runs of {shown(name, 64)}: median, quartiles (band), {each} (thin)"
-        )
-    for dash, (label, value) in zip(_dashes(len(printed)), printed.items(), strict=True):
-        handles.append(Line2D([], [], color=RED, linestyle=dash, linewidth=1.3))
-        one = np.atleast_1d(np.asarray(value, dtype=np.float64))
-        text = f", {one[0]:.6g} s" if one.size == 1 else ""
-        labels.append(f"printed: {shown(label, 48)}{text}")
-    handles.append(Line2D([], [], color=INK, linewidth=1.3))
-    labels.append("optimum")
-    return handles, labels
+def _legend_words(
+    name: str, runs: Mapping[str, Runs], totals: Mapping[str, Sequence[float]]
+) -> str:
+    """What the legend says of a line that has the name of an algorithm or of a printed total."""
+    if name in runs:
+        many = len(runs[name])
+        each = "each" if many <= _RUNS else f"{_RUNS} of them, best and worst included,"
+        return f"{many} runs of {shown(name, 64)}: median, quartiles (band), {each} (thin)"
+    label = name.removeprefix("printed: ")
+    if label not in totals:
+        return name
+    own = totals[label]
+    return f"printed: {shown(label, 48)}" + (f", {own[0]:.6g} s" if len(own) == 1 else "")
 
 
 def endings(
@@ -255,17 +228,13 @@ def endings(
     with drawing():
         figure = Picture(title, description, 9.6, 1.1 + 0.55 * len(ends) + 0.24 * len(lines))
         axes = figure.subplots()
-        for row, ((colour, _), (_, one)) in enumerate(
-            zip(_styles(len(ends)), ends.items(), strict=True)
-        ):
-            good = np.sort(one[np.isfinite(one)])
-            # Spread by rank, so no picture depends on a random draw.
-            offset = 0.26 * (2 * ((np.arange(good.size) * 0.618034) % 1.0) - 1)
-            axes.scatter(good, row + offset, s=14, color=colour, alpha=0.65, linewidths=0, zorder=3)
+        for row, one in enumerate(ends.values()):
+            colour, good = series(row)[0], one[np.isfinite(one)]
+            spread_dots(axes, good, row, 0.26, s=14, color=colour, alpha=0.65, linewidths=0)
             if good.size:
-                axes.plot(
-                    [np.median(good)] * 2, [row - 0.36, row + 0.36], color=colour, linewidth=2.4
-                )
+                middle = np.median(good)
+                reach = [row - 0.36, row + 0.36]
+                axes.plot([middle] * 2, reach, color=colour, linewidth=2.4)
         count = len(ends)
         for i, (label, value, colour) in enumerate(lines):
             at = count - 0.2 + 0.42 * i
@@ -275,15 +244,26 @@ def endings(
                 textcoords="offset points", va="center", fontsize=8, color=colour,
             )  # fmt: skip
         names = [f"{shown(n, 34, 2)}\n{_range(one)}" for n, one in ends.items()]
-        axes.set_yticks(range(count), names)
-        axes.tick_params(axis="y", length=0)
-        axes.set_ylim(count - 0.2 + 0.42 * len(lines), -0.65)
-        _room_for_labels(axes, ends, [value for _, value, _ in lines])
-        axes.spines["left"].set_visible(False)
+        name_rows(axes, names, 0.8 + 0.42 * len(lines), 0.65)
+        every = np.concatenate([*ends.values(), [value for _, value, _ in lines]])
+        every = every[np.isfinite(every)]
+        if every.size:  # at the right there is room for labels
+            width = float(np.ptp(every)) or 0.02 * float(every.max())
+            axes.set_xlim(float(every.min()) - 0.04 * width, float(every.max()) + 0.42 * width)
         axes.set_xlabel("total time, s")
         light_grid(axes, "x")
         finish(figure)
     return figure
+
+
+def spread_dots(axes: Axes, values: Array, row: float, half: float, **style: Any) -> None:
+    """Draw finite values as dots of one row, spread by rank over its height.
+
+    A random spread would differ from picture to picture.
+    """
+    good = np.sort(values[np.isfinite(values)])
+    jitter = half * (2 * ((np.arange(good.size) * 0.618034) % 1.0) - 1)
+    axes.scatter(good, row + jitter, zorder=3, **style)
 
 
 def reached_picture(
@@ -311,14 +291,6 @@ def reached_picture(
     return endings(ends, references, printed, title=title)
 
 
-def _room_for_labels(axes: Axes, ends: Mapping[str, Array], values: Sequence[float]) -> None:
-    every = np.concatenate([*ends.values(), np.asarray(values, dtype=np.float64)])
-    every = every[np.isfinite(every)]
-    if every.size:
-        width = float(np.ptp(every)) or 0.02 * float(every.max())
-        axes.set_xlim(float(every.min()) - 0.04 * width, float(every.max()) + 0.42 * width)
-
-
 def _range(ends: Array) -> str:
     good = ends[np.isfinite(ends)]
     missing = ends.size - good.size
@@ -327,3 +299,93 @@ def _range(ends: Array) -> str:
         return f"{ends.size} runs, none with an answer"
     digits = max(4, 2 - math.floor(math.log10(float(good.max()))))
     return f"{ends.size} runs, {good.min():.{digits}f} to {good.max():.{digits}f} s{tail}"
+
+
+_MARKERS = "os^D"
+"""Of the step lengths, in their order."""
+_SHOWN_OBJECTIVES = 2
+"""Objectives that are drawn: filled and hollow tell two apart."""
+
+
+def instances_picture(result: InstancesResult, *, title: str) -> Picture:
+    """Reductions of the total on every instance, one row for each reading.
+
+    Three panels: both together with the printed reduction as a band, the algorithm alone, and the
+    curve alone at the best known optima. Nothing is clipped; pairs without answer are counted
+    beside their row. `result`: its first two objectives are drawn.
+    """
+    described = [
+        f"{result.label(reading)}: {effect} {distribution(result.reductions(reading, effect))}"
+        for reading in result.readings
+        for effect in Effect
+    ]
+    if result.printed is not None:
+        described.append(f"printed: {percent_range(*result.printed)}")
+    with drawing():
+        figure = Picture(title, "; ".join(described) + ".", 9.6, 1.9 + 0.62 * len(result.readings))
+        panels = figure.subplots(1, 3, sharey=True, width_ratios=(1.25, 1.25, 1.0))
+        for axes, effect in zip(panels, Effect, strict=True):
+            _effect_panel(axes, result, effect)
+        names = []
+        for reading in result.readings:
+            missing = sum(
+                distribution(result.reductions(reading, effect, at)).missing
+                for effect in Effect
+                for at in _objectives(result, effect)
+            )
+            beside = f"\n{missing} pairs without answer" if missing else ""
+            names.append(shown(result.label(reading), 24, 3) + beside)
+        name_rows(panels[0], names, 0.6)
+        figure.legend(*_legend(result), loc="outside lower left", ncols=4)
+        finish(figure)
+    return figure
+
+
+def _objectives(result: InstancesResult, effect: Effect) -> tuple[int, ...]:
+    """Objectives that a panel tells apart; the optima have none."""
+    many = min(_SHOWN_OBJECTIVES, len(result.block.objectives))
+    return (0,) if effect is Effect.CURVE else tuple(range(many))
+
+
+def _effect_panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:
+    if effect is Effect.BOTH and result.printed is not None:
+        low, high = (100 * x for x in result.printed)
+        axes.axvspan(low, high, facecolor=RED, alpha=0.35, linewidth=0)
+        axes.axvline((low + high) / 2, color=RED, linewidth=1.0)
+    axes.axvline(0.0, color=INK, linewidth=0.8)
+    objectives = _objectives(result, effect)
+    for row, reading in enumerate(result.readings):
+        for at in objectives:
+            y = row + 0.2 * (2 * at - len(objectives) + 1)
+            for which, step in enumerate(result.block.lengths):
+                values = 100 * result.reductions(reading, effect, at, step)
+                colour = series(which)[0]
+                spread_dots(
+                    axes, values, y, 0.1, s=16, marker=_MARKERS[which % len(_MARKERS)],
+                    facecolor=colour if at == 0 else PAPER, edgecolor=colour, linewidths=0.8,
+                    alpha=0.8,
+                )  # fmt: skip
+            found = distribution(result.reductions(reading, effect, at))
+            if found.missing < found.pairs:
+                middle = 100 * found.median
+                axes.plot([middle] * 2, [y - 0.17, y + 0.17], color=INK, linewidth=2.2, zorder=4)
+    axes.set_title(str(effect))
+    axes.set_xlabel("reduction of the total, %")
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
+    light_grid(axes, "x")
+
+
+def _legend(result: InstancesResult) -> tuple[list[Line2D | Patch], list[str]]:
+    found: dict[str, Line2D | Patch] = {}
+    for which, step in enumerate(result.block.lengths):
+        colour, marker = series(which)[0], _MARKERS[which % len(_MARKERS)]
+        dot = Line2D([], [], color=colour, marker=marker, markersize=4, linestyle="none")
+        found[f"steps of {step:g} {result.block.unit}"] = dot
+    for at, objective in enumerate(result.block.objectives[:_SHOWN_OBJECTIVES]):
+        word, fill = ("filled", INK) if at == 0 else ("hollow", PAPER)
+        found[f"{word}: {objective}"] = Line2D([], [], **hollow(4, face=fill))
+    found["median"] = Line2D([], [], color=INK, linewidth=2.2)
+    if result.printed is not None:
+        found["printed"] = Patch(facecolor=RED, alpha=0.5)
+    return list(found.values()), list(found)

@@ -9,42 +9,21 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Polygon
-from matplotlib.tri import Triangulation
+from matplotlib.tri import Triangulation, UniformTriRefiner
 from numpy.typing import ArrayLike, NDArray
 
 from ...nlp import Solution
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
-from .drawing import (
-    INK,
-    MUTED,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    Picture,
-    drawing,
-    finish,
-    shown,
-)
+from .drawing import INK, MUTED, ORANGE, PURPLE, RED, SKY, Picture, Style, drawing, finish, shown
 
 LEVELS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """Contours in percent above the reference total."""
-_BELOW = 0.01
-"""A tight total this many percent below the optimum is drawn apart: it needs an explanation."""
-_DIVISIONS = 120
-"""Of each side of the triangle: 7,381 totals, a second or so, and contours without corners."""
 _CORNERS: Array = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(3) / 2]])
 """Of the triangle of shares, each where one duration is all of the total."""
 # On the map, whose colours do not follow the page's theme, neither may these; none of them is a
 # colour of the theme, which a page would replace.
 _DARK = "#101418"  # on the light part of the map
 _LIGHT = "#fefefe"  # on its dark part
-_ENDLESS = 1e100
-"""Stands for an infinite total where shares are multiplied by it."""
-_PRINTED = ("D", "s", "P", "X")
-"""Markers of printed durations, in their order."""
-_ENDS = (("o", SKY), ("^", PURPLE), ("v", _LIGHT), ("<", ORANGE))
-"""Markers and colours of where the runs of each algorithm end, in their order."""
 
 
 def landscape(
@@ -79,33 +58,35 @@ def landscape(
     centre = _shares(optimum.durations)
     every = np.vstack([centre, *(p for _, p in points), *runs.values()])
     every = every[np.isfinite(every).all(axis=1)]
-    description = _words(problem, best, centre[0], printed, runs)
+    parts = [f"optimum {best:.6g} s at shares {', '.join(f'{100 * s:.1f} %' for s in centre[0])}"]
+    for label, h in printed:
+        total = float(tight_total(problem, _shares(h))[0])
+        far = f"{100 * (total / best - 1):+.3g} % after free rescaling"
+        parts.append(f"{label}: {'no rescaling keeps the limits' if np.isinf(total) else far}")
+    parts += [f"{name}: {len(s)} end points" for name, s in runs.items()]
     with drawing():
-        figure = Picture(title, description, 9.6, 5.0)
+        figure = Picture(title, "; ".join(parts), 9.6, 5.0)
         whole, part = figure.subplots(1, 2)
         colours = matplotlib.colormaps["cividis_r"](np.linspace(0, 1, len(LEVELS)))
-        below = False
-        for axes, corner in ((whole, np.zeros(3)), (part, _window(every))):
+        window, below = _window(every), False
+        for axes, corner in ((whole, np.zeros(3)), (part, window)):
             below |= _map(axes, problem, corner, best, colours)
             _mark(axes, corner, centre, points, runs)
-        corner = _window(every)
-        inner = corner + (1 - corner.sum()) * np.eye(3)
-        whole.add_patch(
-            Polygon(inner @ _CORNERS, fill=False, edgecolor=_DARK, linewidth=1.1, zorder=4)
-        )
+        inner = window + (1 - window.sum()) * np.eye(3)
+        edge = Polygon(inner @ _CORNERS, fill=False, edgecolor=_DARK, linewidth=1.1, zorder=4)
+        whole.add_patch(edge)
         whole.set_title("all shares of the total", loc="center", pad=2)
         part.set_title("enlarged", loc="center", pad=2)
         _key(figure, colours, best)
+        note = "Each point: durations of these shares, stretched until a limit is reached (tight "
+        note += "total)."
+        note += f" Hatched: {_forbids(problem)} forbids it." if _forbids(problem) else ""
+        note += " White: below the optimum." if below else ""
         handles, labels = part.get_legend_handles_labels()
         figure.legend(
-            handles,
-            labels,
-            loc="outside lower left",
-            ncols=2,
-            title=_note(problem, below),
-            title_fontsize=8,
-            alignment="left",
-        )
+            handles, labels, loc="outside lower left", ncols=2, title=note,
+            title_fontsize=8, alignment="left",
+        )  # fmt: skip
         finish(figure)
     return figure
 
@@ -127,28 +108,6 @@ def _window(shares: Array) -> Array:
     return np.asarray(np.maximum(low - room, 0.0))
 
 
-def _words(
-    problem: Problem,
-    best: float,
-    centre: Array,
-    printed: Sequence[tuple[str, ArrayLike]],
-    runs: Mapping[str, Array],
-) -> str:
-    parts = [
-        f"optimum {best:.6g} s at shares " + ", ".join(f"{100 * s:.1f} %" for s in centre),
-        *(f"{label}: {_rescaled(problem, h, best)}" for label, h in printed),
-        *(f"{name}: {len(s)} end points" for name, s in runs.items()),
-    ]
-    return "; ".join(parts)
-
-
-def _rescaled(problem: Problem, durations: ArrayLike, best: float) -> str:
-    total = float(tight_total(problem, _shares(durations))[0])
-    if np.isinf(total):
-        return "no rescaling keeps the limits"
-    return f"{100 * (total / best - 1):+.3g} % after free rescaling"
-
-
 def tight_total(problem: Problem, shares: Array) -> Array:
     """Total after free rescaling of durations with the given shares.
 
@@ -163,20 +122,14 @@ def tight_total(problem: Problem, shares: Array) -> Array:
 
 
 def _grid(corner: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Shares on a triangular grid just inside a sub-triangle, and the triangles between them."""
-    n = _DIVISIONS
-    index = np.array([(i, j) for i in range(n + 1) for j in range(n + 1 - i)])
-    local = np.column_stack([index, n - index.sum(axis=1)]) / n
-    local = local * (1 - 3e-4) + 1e-4
-    number = {(int(i), int(j)): k for k, (i, j) in enumerate(index)}
-    triangles = []
-    for i in range(n):
-        for j in range(n - i):
-            a, b, c = number[i, j], number[i + 1, j], number[i, j + 1]
-            triangles.append((a, b, c))
-            if (i + 1, j + 1) in number:
-                triangles.append((b, number[i + 1, j + 1], c))
-    return corner + (1 - corner.sum()) * local, np.array(triangles)
+    """Shares on a triangular grid just inside a sub-triangle, and the triangles between them.
+
+    128 points on each side: 8,385 totals, a second or so, and contours without corners.
+    """
+    whole = Triangulation([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [[0, 1, 2]])
+    fine = UniformTriRefiner(whole).refine_triangulation(subdiv=7)
+    local = np.column_stack([fine.x, fine.y, 1 - fine.x - fine.y]) * (1 - 3e-4) + 1e-4
+    return corner + (1 - corner.sum()) * local, np.asarray(fine.triangles)
 
 
 def _place(corner: Array, shares: Array) -> Array:
@@ -195,21 +148,19 @@ def _map(axes: Axes, problem: Problem, corner: Array, best: float, colours: Arra
     bands = axes.tricontourf(mesh, excess, levels=[-101.0, *LEVELS[1:], 1e9], colors=list(colours))
     bands.set_edgecolor(_DARK)
     bands.set_linewidth(0.4)
-    below = bool(excess.min() < -_BELOW)
+    # What lies 0.01 % below the optimum is drawn apart: it needs an explanation.
+    below = bool(excess.min() < -0.01)
     if below:
-        axes.tricontourf(mesh, excess, levels=[-101.0, -_BELOW], colors=_LIGHT)
+        axes.tricontourf(mesh, excess, levels=[-101.0, -0.01], colors=_LIGHT)
     low, high = problem.duration_lower, problem.duration_upper
     if _forbids(problem):
-        tight = shares * np.minimum(total, _ENDLESS)[:, None]
+        # An infinite total, which no factor could stand before, counts as very long.
+        tight = shares * np.minimum(total, 1e100)[:, None]
         margin = np.min(np.hstack([tight / np.maximum(low, 1e-12), high / tight]), axis=1)
-        margin[np.isinf(total)] = 0.0
-        axes.tricontourf(
-            mesh, np.minimum(margin, 2.0), levels=[-1.0, 1.0], colors="none", hatches=["xx"]
-        )
-        axes.tricontour(
-            mesh, np.minimum(margin, 2.0), levels=[1.0], colors=_DARK, linewidths=1.2,
-            linestyles="dashed",
-        )  # fmt: skip
+        margin = np.where(np.isinf(total), 0.0, np.minimum(margin, 2.0))
+        axes.tricontourf(mesh, margin, levels=[-1.0, 1.0], colors="none", hatches=["xx"])
+        edge: Style = {"colors": _DARK, "linewidths": 1.2, "linestyles": "dashed"}
+        axes.tricontour(mesh, margin, levels=[1.0], **edge)
     axes.add_patch(Polygon(_CORNERS, fill=False, edgecolor=MUTED, linewidth=0.9, zorder=4))
     _ticks(axes, corner)
     axes.set_aspect("equal")
@@ -257,24 +208,18 @@ def _mark(
     printed: Sequence[tuple[str, Array]],
     runs: Mapping[str, Array],
 ) -> None:
+    ends = ("o", SKY), ("^", PURPLE), ("v", _LIGHT), ("<", ORANGE)
     for i, (name, shares) in enumerate(runs.items()):
-        marker, colour = _ENDS[i % len(_ENDS)]
-        x, y = _place(corner, shares).T
-        axes.scatter(
-            x, y, s=20, marker=marker, facecolors=colour, edgecolors=_DARK, linewidths=0.5,
-            zorder=5, label=f"{len(shares)} runs of {shown(name, 40)}",
-        )  # fmt: skip
-    for i, (label, shares) in enumerate(printed):
-        x, y = _place(corner, shares).T
-        axes.scatter(
-            x, y, s=52, marker=_PRINTED[i % len(_PRINTED)], facecolors=RED, edgecolors=_LIGHT,
-            linewidths=1.0, zorder=6, label=f"printed: {shown(label, 44)}",
-        )  # fmt: skip
-    x, y = _place(corner, centre).T
-    axes.scatter(
-        x, y, s=130, marker="*", facecolors=_LIGHT, edgecolors=_DARK, linewidths=1.0, zorder=7,
-        label="optimum",
-    )  # fmt: skip
+        marker, colour = ends[i % len(ends)]
+        dots: Style = {"s": 20, "marker": marker, "facecolors": colour, "edgecolors": _DARK}
+        label = f"{len(shares)} runs of {shown(name, 40)}"
+        axes.scatter(*_place(corner, shares).T, linewidths=0.5, zorder=5, label=label, **dots)
+    for i, (name, shares) in enumerate(printed):
+        dots = {"s": 52, "marker": "DsPX"[i % 4], "facecolors": RED, "edgecolors": _LIGHT}
+        label = f"printed: {shown(name, 44)}"
+        axes.scatter(*_place(corner, shares).T, linewidths=1.0, zorder=6, label=label, **dots)
+    star: Style = {"s": 130, "marker": "*", "facecolors": _LIGHT, "edgecolors": _DARK}
+    axes.scatter(*_place(corner, centre).T, linewidths=1.0, zorder=7, label="optimum", **star)
 
 
 def _forbids(problem: Problem) -> str:
@@ -282,15 +227,6 @@ def _forbids(problem: Problem) -> str:
     bounded = (problem.duration_lower > 0).any() or np.isfinite(problem.duration_upper).any()
     words = ["a bound on the durations"] if bounded else []
     return " or ".join(words + ["a position limit"] * problem.limits.limits_position)
-
-
-def _note(problem: Problem, below: bool) -> str:
-    text = (
-        "Each point: durations of these shares, stretched until a limit is reached (tight total)."
-    )
-    if _forbids(problem):
-        text += f" Hatched: {_forbids(problem)} forbids it."
-    return text + (" White: below the optimum." if below else "")
 
 
 def _key(figure: Picture, colours: Array, best: float) -> None:

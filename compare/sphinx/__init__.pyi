@@ -1,8 +1,5 @@
 from .extension import setup as setup
-from .leaderboard import (
-    board_of as board_of,
-    boards_drawn as boards_drawn,
-)
+from .leaderboard import board_of as board_of, boards_drawn as boards_drawn
 from .papers import (
     COLUMNS as COLUMNS,
     distance_of as distance_of,

@@ -1,4 +1,4 @@
-"""Directives: a verdict card, claims, readings, a waterfall, the table of papers, a certificate."""
+"""Directives, each a part of an audit, of the suite or of the leaderboard as blocks."""
 
 from __future__ import annotations
 
@@ -13,23 +13,26 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from ...nlp import Evidence
-from ...problem import TrajgapError, file_name
+from ...problem import TrajgapError
+from ...problem.suite import BenchmarkInstance, load_instance
 from ..audits import KEPT
 from ..blocks import (
     REACHED_MEANING,
     Block,
     Cell,
-    Drawn,
     Folded,
     Prose,
     Terms,
     badge,
+    board_table,
     card_shown,
     claims_shown,
     code,
+    instance_terms,
     reached_table,
     reference,
     steps_table,
+    suite_table,
     table,
 )
 from ..documents import (
@@ -47,64 +50,75 @@ from ..documents import (
     value_or_none,
     worth,
 )
-from ..pictures import reached_picture, svg, waterfall_picture
+from ..gaps import SIZES, Board, curve_of, size_of
+from ..pictures import drawn, reached_picture, waterfall_picture
 from .docutils_nodes import nodes_of
-from .leaderboard import Leaderboard
+from .leaderboard import HANDLINGS, board_of, board_parts, boards_drawn, said
 from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn
-from .proofs import proof_said, proved_again
-from .results import Results
-from .suite import InstanceShown, SuiteTable
+from .results import PROVED_WITHIN, Results, instances_of, proof_said, proved_again
 
 _NONE = "–"
 """A cell without a value."""
-_OPEN_SEARCHES = 2
-"""Searches that stand in the open, such as that of each joint separately and of all together."""
-_OPEN_ROWS = 8
-"""Rows of readings that stand in the open; of more, those of the default reading do."""
 
 
-class FromResults(SphinxDirective, ABC):
-    """A directive that reads results; what is wrong is one error with its place."""
-
-    required_arguments = 1
-
-    @property
-    def results(self) -> Results:
-        """The folder that conf.py names."""
-        return Results(Path(self.env.srcdir, self.config.trajgap_results))
+class FromBlocks(SphinxDirective, ABC):
+    """A directive that shows blocks; what is wrong is one error of the build with its place."""
 
     def run(self) -> list[nodes.Node]:
         """The nodes, or an error of the build."""
-        results = self.results
-        for name in self.arguments[:1]:
-            self.env.note_dependency(str(results.folder / f"{name}.json"))
         try:
-            return nodes_of(self.made(results))
+            return nodes_of(self.made())
         except TrajgapError as error:
             raise self.error(str(error)) from None
 
     @abstractmethod
-    def made(self, results: Results) -> Iterable[Block]:
+    def made(self) -> Iterable[Block]:
         """What the directive puts into the page."""
 
+    def place(self, folder: str, name: str = "") -> Path:
+        """A file beside conf.py, which the page depends on if it is named."""
+        path = Path(self.env.srcdir, folder, name)
+        if name:
+            self.env.note_dependency(str(path))
+        return path
 
-class Card(FromResults):
+    @property
+    def results(self) -> Results:
+        """The folder that conf.py names."""
+        return Results(self.place(self.config.trajgap_results))
+
+
+class FromCase(FromBlocks):
+    """A directive that shows a part of one audit."""
+
+    required_arguments = 1
+
+    def made(self) -> Iterable[Block]:
+        """What the directive puts into the page."""
+        name = self.arguments[0]
+        self.place(self.config.trajgap_results, f"{name}.json")
+        return self.part_of(self.results.audited(name))
+
+    @abstractmethod
+    def part_of(self, case: AuditedCase) -> Iterable[Block]:
+        """What the directive shows of an audit."""
+
+
+class Card(FromCase):
     """``{trajgap-card} CASE``: the paper, and the verdict in at most 80 words."""
 
-    def made(self, results: Results) -> list[Block]:
+    def part_of(self, case: AuditedCase) -> list[Block]:
         """One paragraph a sentence; errors marked."""
-        case = results.audited(self.arguments[0])
         return [reference(case.source), card_shown(case.card)]
 
 
-class Claims(FromResults):
+class Claims(FromCase):
     """``{trajgap-claims} CASE``: every claim with its place, digits, word and reason."""
 
     option_spec: ClassVar[dict[str, Any]] = {"verdict": directives.unchanged}
 
-    def made(self, results: Results) -> list[Block]:
+    def part_of(self, case: AuditedCase) -> list[Block]:
         """The claims with one of the words asked for, in their order; all without the option."""
-        case = results.audited(self.arguments[0])
         wanted = wanted_words(self.options.get("verdict", ""))
         chosen = [one for one in case.verdicts if not wanted or one.verdict in wanted]
         if wanted:
@@ -144,12 +158,12 @@ def _explained(case: AuditedCase) -> dict[str, list[str]]:
     return found
 
 
-class Readings(FromResults):
+class Readings(FromCase):
     """``{trajgap-readings} CASE``: what the text leaves open, the default, and what follows."""
 
-    def made(self, results: Results) -> list[Block]:
+    def part_of(self, case: AuditedCase) -> list[Block]:
         """The default with its reason, and a row for each reading and printed motion."""
-        return readings_of(results.audited(self.arguments[0]))
+        return readings_of(case)
 
 
 def readings_of(case: AuditedCase) -> list[Block]:
@@ -183,7 +197,7 @@ def readings_of(case: AuditedCase) -> list[Block]:
     if len(places) == 1:  # a column of one text would take the room of the others
         shown.append(Prose(f"Durations judged: {next(iter(places))}."))
         grid = grid.without(1)
-    if len(grid.rows) <= _OPEN_ROWS:
+    if len(grid.rows) <= 8:  # of more, those of the default reading stand open
         return [*shown, grid, known]
     pairs = zip(grid.rows, said.outcomes, strict=True)
     own = tuple(row for row, o in pairs if o.reading == said.default)
@@ -208,69 +222,61 @@ def _under(
     )
 
 
-class WaterfallShown(FromResults):
+class WaterfallShown(FromCase):
     """``{trajgap-waterfall} CASE``: where the time goes, as a picture and step by step."""
 
-    option_spec: ClassVar[dict[str, Any]] = {
-        "problem": directives.unchanged,
-        "reading": directives.unchanged,
-    }
+    option_spec: ClassVar[dict[str, Any]] = dict.fromkeys(
+        ("problem", "reading"), directives.unchanged
+    )
 
-    def made(self, results: Results) -> list[Block]:
+    def part_of(self, case: AuditedCase) -> list[Block]:
         """The first waterfall that fits the options."""
         name = self.arguments[0]
-        case = results.audited(name)
         asked = {key: self.options[key] for key in ("problem", "reading") if key in self.options}
         for found in case.waterfalls:
             if all(getattr(found, key) == value for key, value in asked.items()):
-                drawn = waterfall_picture(found, title=case.title)
-                place = file_name("waterfall", name, found.problem, found.reading)
+                picture = waterfall_picture(found, title=case.title)
                 said = [f"{s.name}: {s.note}." for s in found.steps if s.name in OPTIMA_STEPS]
                 return [
-                    Drawn(place, svg(drawn), drawn.title),
+                    drawn(picture, "waterfall", name, found.problem, found.reading),
                     *(Prose(capital(one), "note") for one in (*said, *found.without_optimum)),
                     Folded("Step by step", (steps_table(found),)),
                 ]
         raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; see the JSON")
 
 
-class ReachedShown(FromResults):
+class ReachedShown(FromCase):
     """``{trajgap-reached} CASE``: how near the paper's algorithms get, with every run drawn."""
 
-    def made(self, results: Results) -> list[Block]:
+    def part_of(self, case: AuditedCase) -> list[Block]:
         """For each search a table of its algorithms, and a picture of where all runs end."""
         name = self.arguments[0]
-        case = results.audited(name)
         found: list[Block] = []
         for at, (title, runs) in enumerate(by_search(case.reached).items()):
-            drawn = reached_picture(runs, case.waterfalls, title=title)
-            place = file_name("reached", name, runs[0].problem, runs[0].searched)
-            own = reached_table(runs), Drawn(place, svg(drawn), title)
-            found += [Prose(f"{title}."), *own] if at < _OPEN_SEARCHES else [Folded(title, own)]
+            picture = reached_picture(runs, case.waterfalls, title=title)
+            place = ("reached", name, runs[0].problem, runs[0].searched)
+            own = reached_table(runs), drawn(picture, *place)
+            # Two stand open, such as each joint separately and all together.
+            found += [Prose(f"{title}."), *own] if at < 2 else [Folded(title, own)]
         return [*found, Prose(REACHED_MEANING, "note")] if found else []
 
 
-class Papers(FromResults):
+class Papers(FromBlocks):
     """``{trajgap-papers}``: all audited cases, or those of some kinds of source, one a row."""
 
-    required_arguments = 0
     option_spec: ClassVar[dict[str, Any]] = {
         "pages": directives.unchanged,
         "kinds": directives.unchanged,
         "drawn": directives.flag,
     }
 
-    def made(self, results: Results) -> list[Block]:
+    def made(self) -> list[Block]:
         """A picture of the distances, and a sortable table of what was found."""
-        rows = paper_rows(results, self.options.get("kinds", ""))
+        rows = paper_rows(self.results, self.options.get("kinds", ""))
         for row in rows:
-            self.env.note_dependency(str(results.folder / f"{row.name}.json"))
-        found: list[Block] = []
-        if "drawn" in self.options:
-            drawn = papers_drawn(rows)
-            found.append(Drawn("papers", svg(drawn), drawn.title))
-        grid = table(COLUMNS, map(self._cells, rows), "", "sortable", "papers")
-        return [*found, grid]
+            self.place(self.config.trajgap_results, f"{row.name}.json")
+        picture = [drawn(papers_drawn(rows), "papers")] if "drawn" in self.options else []
+        return [*picture, table(COLUMNS, map(self._cells, rows), "", "sortable", "papers")]
 
     def _cells(self, row: PaperRow) -> list[Cell | str]:
         """The paper as one cites it above what it is about, and its numbers."""
@@ -280,12 +286,11 @@ class Papers(FromResults):
         return [paper, *(badge(one) if one in tuple(Evidence) else one for one in row.cells)]
 
 
-class SourceShown(FromResults):
+class SourceShown(FromCase):
     """``{trajgap-source} CASE``: what was read, and how to cite the audit and make it again."""
 
-    def made(self, results: Results) -> list[Block]:
+    def part_of(self, case: AuditedCase) -> list[Block]:
         """Source, date, versions, hashes, command and BibTeX entry."""
-        case = results.audited(self.arguments[0])
         made = case.provenance
         facts = Terms(
             (
@@ -301,11 +306,9 @@ class SourceShown(FromResults):
         """The certificates that the audit rests on, each proved again where conf.py has them."""
         if not (made.certificates and self.config.trajgap_certificates):
             return []
-        folder = Path(self.env.srcdir, self.config.trajgap_certificates)
         rows = []
         for one in made.certificates:
-            path = folder / one.file
-            self.env.note_dependency(str(path))
+            path = self.place(self.config.trajgap_certificates, one.file)
             verdict = proved_again(path, one.sha256)
             rows.append((code(one.file), badge(worth(verdict)), verdict.reason))
         note = Prose("Each certificate was verified when this page was built.")
@@ -313,7 +316,7 @@ class SourceShown(FromResults):
         return [Folded(count, (note, table(("file", "evidence", "what it proves"), rows)))]
 
 
-class CertificateShown(SphinxDirective):
+class CertificateShown(FromBlocks):
     """``{trajgap-certificate} FILE``: what a certificate proves, proved again by the build.
 
     A name that begins with a slash starts at the folder of conf.py.
@@ -321,16 +324,86 @@ class CertificateShown(SphinxDirective):
 
     required_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
+    def made(self) -> list[Block]:
         """The interval, or an error of the build if the certificate does not prove it."""
         name = self.arguments[0]
         folder = "" if name.startswith("/") else self.config.trajgap_certificates
-        path = Path(self.env.srcdir, folder, name.removeprefix("/"))
-        self.env.note_dependency(str(path))
-        try:
-            return nodes_of([proof_said(path, name=path.name)])
-        except TrajgapError as error:
-            raise self.error(str(error)) from None
+        path = self.place(folder, name.removeprefix("/"))
+        return [proof_said(path, name=path.name)]
+
+
+class SuiteTable(FromBlocks):
+    """``{trajgap-suite}``: the instances with their bounds, one a row; sortable."""
+
+    option_spec: ClassVar[dict[str, Any]] = dict.fromkeys(("curve", "labels"), directives.unchanged)
+
+    def made(self) -> list[Block]:
+        """The table; ``:labels:`` is the prefix of the labels that instances have on the site."""
+        curve, labels = self.options.get("curve"), self.options.get("labels")
+        chosen = instances_of(curve)
+        place = "" if labels is None else f"ref:{labels}{{}}".lower()
+        grid = suite_table(chosen, place, digits=9)
+        said = curve in {one.curve for one in chosen}  # the page says it already
+        return [grid.without(1) if said else grid]
+
+
+class InstanceShown(FromBlocks):
+    """``{trajgap-instance} NAME``: bounds, hardness, and the certificate proved again."""
+
+    required_arguments = 1
+
+    def made(self) -> list[Block]:
+        """Facts of the instance, or an error of the build if its certificate does not hold."""
+        one = load_instance(self.arguments[0])
+        return [self._proof(one), instance_terms(one)]
+
+    def _proof(self, one: BenchmarkInstance) -> Prose:
+        file = one.certificate_file()
+        if file is None:
+            return Prose(f"No certificate is shipped; create it with {one.command}.")
+        path = self.place("", str(file))
+        if one.verify_seconds is not None and one.verify_seconds > PROVED_WITHIN:
+            later = f"Its proof takes {one.verify_seconds:g} s and is not part of this build."
+            return Prose(later, word=str(one.evidence))
+        return proof_said(path, one.certificate_sha256)
+
+
+class Leaderboard(FromBlocks):
+    """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling."""
+
+    required_arguments = 1
+    option_spec: ClassVar[dict[str, Any]] = {
+        "budget": directives.positive_int,
+        "handling": directives.unchanged,
+    }
+
+    def run(self) -> list[nodes.Node]:
+        """The part that is asked for; sentences are a list."""
+        if self.arguments[0] != "said":
+            return super().run()
+        found = nodes.bullet_list()
+        found += [nodes.list_item("", *nodes_of([Prose(one)])) for one in said(*self._both())]
+        return [found]
+
+    def _both(self) -> list[Board]:
+        return [board_of(one, self.options.get("budget", 1000)) for one in HANDLINGS]
+
+    def made(self) -> list[Block]:
+        """A picture of both handlings, or a table of one of them."""
+        board = board_of(
+            self.options.get("handling", "death-penalty"), self.options.get("budget", 1000)
+        )
+        match self.arguments[0]:
+            case "picture":
+                return [drawn(boards_drawn(self._both()), "leaderboard")]
+            case "table":
+                missing = Prose(f"Not complete yet: {', '.join(board.missing)}.")
+                return [board_table(board), *([missing] if board.missing else [])]
+            case "curves":
+                return [board_parts(board, curve_of, str)]
+            case "sizes":
+                return [board_parts(board, size_of, SIZES.index)]
+        raise TrajgapError("trajgap-leaderboard: say said, picture, table, curves or sizes")
 
 
 DIRECTIVES: dict[str, type[SphinxDirective]] = {

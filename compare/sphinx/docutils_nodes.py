@@ -7,38 +7,38 @@ from collections.abc import Iterable, Iterator, Sequence
 from docutils import nodes
 from sphinx.addnodes import only, pending_xref
 
-from ..blocks import Block, CardShown, Cell, Claimed, Drawn, Folded, Grid, Prose, Terms, slug
+from .. import blocks
 from ..documents import capital
 from ..pictures import embedded
 
-_WIDTHS = {"~": 40, ">": 20}
-"""Characters of a column of prose and of one of numbers, for builders that draw tables."""
-_WIDTH = 24
-"""Of another column of such a table."""
 
-
-def nodes_of(blocks: Iterable[Block]) -> list[nodes.Node]:
+def nodes_of(shown: Iterable[blocks.Block]) -> list[nodes.Node]:
     """What a page of the site shows of blocks; their folds stand open outside HTML."""
-    return [node for block in blocks for node in _nodes(block)]
+    return [node for block in shown for node in _nodes(block)]
 
 
-def _nodes(block: Block) -> Iterator[nodes.Node]:
-    if isinstance(block, Prose):
+def _nodes(block: blocks.Block) -> Iterator[nodes.Node]:
+    if isinstance(block, blocks.Prose):
         yield _prose(block)
-    elif isinstance(block, Grid):
+    elif isinstance(block, blocks.Grid):
         yield _table(block.columns, block.rows, block.styles, block.marks)
-    elif isinstance(block, Terms):
-        rows = [(Cell(name), value) for name, value in block.cells]
+    elif isinstance(block, blocks.Terms):
+        rows = [(blocks.Cell(name), value) for name, value in block.cells]
         yield _table(("what", "value"), rows, ("facts",))
-    elif isinstance(block, Drawn):
-        yield from _picture(block)
-    elif isinstance(block, CardShown):
+    elif isinstance(block, blocks.Drawn):
+        # Inside a page a picture follows its theme; without HTML stands what it says.
+        inside, elsewhere = only(expr="format_html"), only(expr="not format_html")
+        picture = framed(embedded(block.document, block.name))
+        inside += nodes.raw("", picture, format="html")
+        elsewhere += _paragraph(block.description)
+        yield from (inside, elsewhere)
+    elif isinstance(block, blocks.CardShown):
         box = nodes.container(classes=["trajgap-card"])
         box += [_paragraph(said, weight) for said, weight in block.sentences]
         yield box
-    elif isinstance(block, Claimed):
+    elif isinstance(block, blocks.Claimed):
         yield _claimed(block)
-    elif isinstance(block, Folded):
+    elif isinstance(block, blocks.Folded):
         yield from _folded(block.title, nodes_of(block.blocks))
 
 
@@ -47,19 +47,19 @@ def _paragraph(text: str, weight: str = "") -> nodes.paragraph:
     return nodes.paragraph("", text, classes=[f"trajgap-{said}"] if said else [])
 
 
-def _prose(block: Prose) -> nodes.Element:
+def _prose(block: blocks.Prose) -> nodes.Element:
     if block.weight == "source":
         return nodes.literal_block(block.text, block.text, language="bibtex")
     made = _paragraph("", block.weight)
     made += [_badge(block.word), nodes.Text(" ")] if block.word else []
     made += nodes.Text(block.text)
-    if block.doi_link:
+    if blocks.doi_link(block.doi):
         made += nodes.Text(" ")
-        made += nodes.reference("", f"doi:{block.doi}", refuri=block.doi_link)
+        made += nodes.reference("", f"doi:{block.doi}", refuri=blocks.doi_link(block.doi))
     return made
 
 
-def _claimed(block: Claimed) -> nodes.container:
+def _claimed(block: blocks.Claimed) -> nodes.container:
     box = nodes.container(classes=["trajgap-claim"])
     said = nodes.paragraph(classes=["trajgap-said"])
     word, comma, beside = block.verdict.text.partition(", ")
@@ -86,10 +86,10 @@ def _folded(title: str, inside: Sequence[nodes.Node]) -> list[nodes.Node]:
 
 def _badge(word: str) -> nodes.inline:
     """A word of the vocabulary, coloured as on the pages of an audit."""
-    return nodes.inline("", word, classes=["trajgap-word", f"trajgap-{slug(word)}"])
+    return nodes.inline("", word, classes=["trajgap-word", f"trajgap-{blocks.slug(word)}"])
 
 
-def _inline(cell: Cell) -> Iterator[nodes.Node]:
+def _inline(cell: blocks.Cell) -> Iterator[nodes.Node]:
     """A cell: its first line a badge, code or a link; further ones in grey behind it."""
     first, *others = cell.text.split("\n")
     kind, _, target = cell.target.partition(":")
@@ -110,7 +110,7 @@ def _inline(cell: Cell) -> Iterator[nodes.Node]:
 
 def _table(
     columns: Sequence[str],
-    rows: Iterable[Sequence[Cell]],
+    rows: Iterable[Sequence[blocks.Cell]],
     styles: Sequence[str],
     marks: Sequence[str] = (),
 ) -> nodes.table:
@@ -119,30 +119,22 @@ def _table(
     found = nodes.table(classes=["trajgap-table", *(f"trajgap-{one}" for one in styles), *given])
     group = nodes.tgroup(cols=len(columns))
     for mark in marks or [""] * len(columns):
-        group += nodes.colspec(colwidth=_WIDTHS.get(mark, _WIDTH) if drawn else 1)
+        group += nodes.colspec(colwidth={"~": 40, ">": 20}.get(mark, 24) if drawn else 1)
     head, body = nodes.thead(), nodes.tbody()
-    head += _row(map(Cell, columns))
+    head += _row(map(blocks.Cell, columns))
     body += [_row(cells) for cells in rows]
     group += [head, body]
     found += group
     return found
 
 
-def _row(cells: Iterable[Cell]) -> nodes.row:
+def _row(cells: Iterable[blocks.Cell]) -> nodes.row:
     made = nodes.row()
     for cell in cells:
         inside = nodes.paragraph()
         inside += list(_inline(cell))
         made += nodes.entry("", inside)
     return made
-
-
-def _picture(drawn: Drawn) -> list[nodes.Node]:
-    """A picture inside the page, so that it follows the theme; without HTML what it says."""
-    inside, elsewhere = only(expr="format_html"), only(expr="not format_html")
-    inside += nodes.raw("", framed(embedded(drawn.document, drawn.name)), format="html")
-    elsewhere += _paragraph(drawn.description)
-    return [inside, elsewhere]
 
 
 def framed(inside: str) -> str:

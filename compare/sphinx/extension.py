@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
-from docutils.parsers.rst.states import Inliner
 from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxRole
 from sphinx.util.typing import ExtensionMetadata
 
 from ...problem import TrajgapError
@@ -29,33 +28,23 @@ def shown(value: object, form: str) -> str:
         ) from None
 
 
-def value_role(
-    _name: str,
-    rawtext: str,
-    text: str,
-    lineno: int,
-    inliner: Inliner,
-    _options: Mapping[str, Any] | None = None,
-    _content: Sequence[str] = (),
-) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+class ValueRole(SphinxRole):
     """A value by its key: ``NAME:key.key`` or ``NAME:key.key|FORMAT``.
 
     A key at which nothing stands is an error of the build.
     """
-    environment = inliner.document.settings.env
-    folder = Path(environment.srcdir, environment.config.trajgap_results)
-    key, _, form = text.partition("|")
-    environment.note_dependency(str(folder / f"{key.partition(':')[0]}.json"))
-    try:
-        said = shown(Results(folder).value(key.strip()), form.strip())
-    except TrajgapError as error:
-        message = inliner.reporter.error(str(error), line=lineno)
-        return [inliner.problematic(rawtext, rawtext, message)], [message]
-    return [nodes.inline(rawtext, said, classes=["trajgap-value"])], []
 
-
-STATIC = Path(__file__).parent / "static"
-"""Style and script of the pages: shipped, so nothing comes from the network."""
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """The value, or an error of the build."""
+        folder = Path(self.env.srcdir, self.config.trajgap_results)
+        key, _, form = self.text.partition("|")
+        self.env.note_dependency(str(folder / f"{key.partition(':')[0]}.json"))
+        try:
+            said = shown(Results(folder).value(key.strip()), form.strip())
+        except TrajgapError as error:
+            message = self.inliner.reporter.error(str(error), line=self.lineno)
+            return [self.inliner.problematic(self.rawtext, self.rawtext, message)], [message]
+        return [nodes.inline(self.rawtext, said, classes=["trajgap-value"])], []
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
@@ -68,7 +57,7 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     app.add_config_value("trajgap_certificates", "", "env", frozenset({str}))
     for name, directive in DIRECTIVES.items():
         app.add_directive(name, directive)
-    app.add_role("trajgap", value_role)
+    app.add_role("trajgap", ValueRole())
     app.connect("builder-inited", _add_static)
     app.add_css_file("trajgap.css")
     app.add_js_file("trajgap.js", loading_method="defer")
@@ -80,4 +69,4 @@ def setup(app: Sphinx) -> ExtensionMetadata:
 
 
 def _add_static(app: Any) -> None:
-    app.config.html_static_path.append(str(STATIC))
+    app.config.html_static_path.append(str(Path(__file__).parent / "static"))

@@ -5,70 +5,53 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from docutils import nodes
-from docutils.parsers.rst import directives
-from sphinx.util.docutils import SphinxDirective
 
 from ...heuristics import KINDS
-from ..blocks import Block, Drawn, Grid, Prose, board_table, table
-from ..gaps import (
-    DESCENT,
-    LADDER,
-    SIZES,
-    SOLVED,
-    Board,
-    Ranked,
-    Summary,
-    boards,
-    curve_of,
-    leaderboard_rows,
-    size_of,
-    success_interval,
-)
-from ..pictures import BoardPanel, Picture, leaderboard_picture, svg
-from .docutils_nodes import nodes_of
+from .. import gaps
+from ..blocks import Grid, share_cell, table
+from ..pictures import BoardPanel, Picture, leaderboard_picture
 
-_HANDLINGS = {
+HANDLINGS = {
     "death-penalty": "Death penalty: a motion beyond a limit is rejected",
     "stretch": "Stretch: a motion beyond a limit is slowed down until it keeps every limit",
 }
 """What each handling does, as the title of its panel."""
-_MIDDLE = SOLVED.index(1e-3)
+_MIDDLE = gaps.SOLVED.index(1e-3)
 """Place of the target that sentences speak of: 0.1 %, which printed digits can tell apart."""
 
 
 @lru_cache(maxsize=1)
-def _boards() -> dict[tuple[str, int], Board]:
+def _boards() -> dict[tuple[str, int], gaps.Board]:
     """The committed standings: each part of the page asks for one of them."""
-    return {(board.handling, board.budget): board for board in boards(leaderboard_rows())}
+    return {(board.handling, board.budget): board for board in gaps.boards(gaps.leaderboard_rows())}
 
 
-def board_of(handling: str, budget: int) -> Board:
+def board_of(handling: str, budget: int) -> gaps.Board:
     """Standings of one handling and budget."""
     return _boards()[handling, budget]
 
 
-def papers_own(one: Ranked) -> bool:
+def papers_own(one: gaps.Ranked) -> bool:
     """Whether an optimiser is an algorithm of the papers, as printed."""
     return one.optimizer in KINDS
 
 
-def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
+def said(penalty: gaps.Board, stretch: gaps.Board) -> tuple[str, ...]:
     """What both boards of one budget mean, in four sentences of numbers alone."""
     strict, loose = penalty.searches, stretch.searches
     best, random = strict[0], _named(penalty, "random")
-    reference = _named(penalty, DESCENT)
+    reference = _named(penalty, gaps.DESCENT)
     solved = round(reference.solved[2][0] * reference.problems)
     return (
         f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} is "
         f"first of {len(strict)} optimisers: {_share(best)} of its runs come within 0.1\N{NBSP}% "
         f"of the certified optimum, against {_share(random)} of random search; the median "
-        f"of the optimisers is {_median(strict)}.",
+        f"of the optimisers is {_share(*strict)}.",
         "If a motion beyond a limit is slowed down instead of rejected, the median of the "
-        f"optimisers is {_median(loose)}, and the first, {loose[0].optimizer}, reaches "
+        f"optimisers is {_share(*loose)}, and the first, {loose[0].optimizer}, reaches "
         f"{_share(loose[0])}.",
         f"The best of the papers' algorithms are {_papers_best(strict)} under the death penalty, "
         f"and {_papers_best(loose)} under the stretch.",
@@ -77,25 +60,22 @@ def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
     )
 
 
-def _named(board: Board, label: str) -> Ranked:
+def _named(board: gaps.Board, label: str) -> gaps.Ranked:
     return next(one for one in board.standings if one.optimizer == label)
 
 
-def _share(one: Ranked) -> str:
-    return f"{100 * one.solved[_MIDDLE][0]:.0f}\N{NBSP}%"
-
-
-def _median(standings: Sequence[Ranked]) -> str:
+def _share(*standings: gaps.Ranked) -> str:
+    """Median share of their runs that come within 0.1 %."""
     middle = float(np.median([one.solved[_MIDDLE][0] for one in standings]))
     return f"{100 * middle:.0f}\N{NBSP}%"
 
 
-def _papers_best(standings: Sequence[Ranked]) -> str:
+def _papers_best(standings: Sequence[gaps.Ranked]) -> str:
     first = next(one for one in standings if papers_own(one))
     return f"{first.optimizer} ({_share(first)})"
 
 
-def boards_drawn(panels: Sequence[Board]) -> Picture:
+def boards_drawn(panels: Sequence[gaps.Board]) -> Picture:
     """The picture of boards with the same budget and problems, one panel each."""
     first = panels[0]
     runs = max(one.runs // one.problems for one in first.searches)
@@ -103,10 +83,10 @@ def boards_drawn(panels: Sequence[Board]) -> Picture:
         f"How near {len(first.searches)} optimisers come to the certified optimum in "
         f"{first.budget:,} evaluations ({len(first.problems)} instances, up to {runs} runs each)"
     )
-    return leaderboard_picture([_panel(board) for board in panels], LADDER, title=title)
+    return leaderboard_picture([_panel(board) for board in panels], gaps.LADDER, title=title)
 
 
-def _panel(board: Board) -> BoardPanel:
+def _panel(board: gaps.Board) -> BoardPanel:
     standings = board.searches
     own = next(one for one in standings if papers_own(one))
     marked = {
@@ -117,69 +97,35 @@ def _panel(board: Board) -> BoardPanel:
     }
     names = {one.optimizer for one in marked.values()}
     return BoardPanel(
-        _HANDLINGS[board.handling],
+        HANDLINGS[board.handling],
         {label: one.within for label, one in marked.items()},
         [one.within for one in standings if one.optimizer not in names],
     )
 
 
-class Leaderboard(SphinxDirective):
-    """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling."""
-
-    required_arguments = 1
-    option_spec: ClassVar[dict[str, Any]] = {
-        "budget": directives.positive_int,
-        "handling": directives.unchanged,
-    }
-
-    def run(self) -> list[nodes.Node]:
-        """The part that is asked for."""
-        budget = self.options.get("budget", 1000)
-        handling = self.options.get("handling", "death-penalty")
-        both = [board_of(one, budget) for one in _HANDLINGS]
-        match self.arguments[0]:
-            case "said":
-                found = nodes.bullet_list()
-                found += [nodes.list_item("", *nodes_of([Prose(one)])) for one in said(*both)]
-                return [found]
-            case "picture":
-                made = boards_drawn(both)
-                return nodes_of([Drawn("leaderboard", svg(made), made.title)])
-            case "table":
-                return nodes_of(self._table(board_of(handling, budget)))
-            case "curves":
-                return nodes_of([self._parts(board_of(handling, budget), curve_of, str)])
-            case "sizes":
-                return nodes_of([self._parts(board_of(handling, budget), size_of, SIZES.index)])
-        raise self.error("trajgap-leaderboard: say said, picture, table, curves or sizes")
-
-    def _table(self, board: Board) -> list[Block]:
-        missing = f"Not complete yet: {', '.join(board.missing)}."
-        return [board_table(board), *([Prose(missing)] if board.missing else [])]
-
-    def _parts(
-        self, board: Board, part_of: Callable[[str], str], order: Callable[[str], Any]
-    ) -> Grid:
-        """Share of runs within 0.1 % in each class of instances."""
-        classes = {problem: part_of(problem) for problem in board.problems}
-        parts = sorted(set(classes.values()), key=order)
-        found: dict[tuple[str, str], list[Summary]] = {}
-        for row in leaderboard_rows():
-            asked = (row.budget, row.handling) == (board.budget, board.handling)
-            if asked and row.problem in classes:
-                found.setdefault((row.optimizer, classes[row.problem]), []).append(row)
-        rows = [
-            [one.optimizer, *(_share_of(found[one.optimizer, part]) for part in parts)]
-            for one in board.standings
-        ]
-        counts = Counter(classes.values())
-        heads = [f"{part} ({counts[part]})" for part in parts]
-        return table(("optimiser", *heads), rows, "", "sortable")
+def board_parts(
+    board: gaps.Board, part_of: Callable[[str], str], order: Callable[[str], Any]
+) -> Grid:
+    """Share of runs within 0.1 % in each class of instances."""
+    classes = {problem: part_of(problem) for problem in board.problems}
+    parts = sorted(set(classes.values()), key=order)
+    found: dict[tuple[str, str], list[gaps.Summary]] = {}
+    for row in gaps.leaderboard_rows():
+        asked = (row.budget, row.handling) == (board.budget, board.handling)
+        if asked and row.problem in classes:
+            found.setdefault((row.optimizer, classes[row.problem]), []).append(row)
+    rows = [
+        [one.optimizer, *(_share_of(found[one.optimizer, part]) for part in parts)]
+        for one in board.standings
+    ]
+    counts = Counter(classes.values())
+    heads = [f"{part} ({counts[part]})" for part in parts]
+    return table(("optimiser", *heads), rows, "", "sortable")
 
 
-def _share_of(rows: Sequence[Summary]) -> str:
+def _share_of(rows: Sequence[gaps.Summary]) -> str:
     """Share of the runs within 0.1 %, each problem counting alike, with Wilson's interval."""
-    at, runs = LADDER.index(SOLVED[_MIDDLE]), sum(row.runs for row in rows)
+    at, runs = gaps.LADDER.index(gaps.SOLVED[_MIDDLE]), sum(row.runs for row in rows)
     share = float(np.mean([row.within[at] / row.runs for row in rows]))
-    low, high = success_interval(round(share * runs), runs)
-    return f"{100 * share:.0f} %\n({100 * low:.0f} to {100 * high:.0f})"
+    low, high = gaps.success_interval(round(share * runs), runs)
+    return share_cell(share, low, high)

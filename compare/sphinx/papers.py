@@ -26,17 +26,8 @@ from .results import Results
 
 _NONE = "–"
 """A cell without a value."""
-_OPEN = ClaimVerdict.NOT_CHECKABLE
-"""The word of claims on which nothing is decided."""
-COLUMNS = (
-    "paper",
-    "printed, s",
-    "optimum or best known, s",
-    "above it",
-    "evidence",
-    "its algorithm ends",
-    "what was found",
-)
+COLUMNS = ("paper", "printed, s", "optimum or best known, s", "above it", "evidence",
+           "its algorithm ends", "what was found")  # fmt: skip
 """What a row of the table says."""
 
 
@@ -138,18 +129,11 @@ def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
 def paper_row(name: str, case: AuditedCase) -> PaperRow:
     """One audited case as a row of the table."""
     counts = Counter(one.verdict for one in case.verdicts)
-    decided = counts.total() - counts[_OPEN]
+    decided = counts.total() - counts[ClaimVerdict.NOT_CHECKABLE]
     against = decided > counts[ClaimVerdict.SUPPORTED]
-    return PaperRow(
-        name,
-        cited(case.source),
-        case.title,
-        distance_of(case),
-        reached_of(case),
-        _found(case, counts, against),
-        decided,
-        against,
-    )
+    found, named = _found(case, counts, against), cited(case.source)
+    distance, reached = distance_of(case), reached_of(case)
+    return PaperRow(name, named, case.title, distance, reached, found, decided, against)
 
 
 def _found(case: AuditedCase, counts: Counter[ClaimVerdict], against: bool) -> str:
@@ -158,7 +142,7 @@ def _found(case: AuditedCase, counts: Counter[ClaimVerdict], against: bool) -> s
     if case.card.errors:
         return case.card.errors[0]
     if against:
-        found = every - supported - counts[_OPEN]
+        found = every - supported - counts[ClaimVerdict.NOT_CHECKABLE]
         return f"{found} of {every} claims do not hold as printed or depend on the reading."
     if not supported:
         return "No claim can be checked from the text."

@@ -13,8 +13,7 @@ import pytest
 from support import browser
 from support.checkout import ROOT
 from trajgap.compare.app import make_server, server
-from trajgap.compare.app.curves_shown import offered_curves
-from trajgap.compare.app.submitted import FormError, case_of
+from trajgap.compare.app.server import FormError, case_of, offered_curves
 from trajgap.problem import PackageError, TrajgapError, parse_case
 
 flask = pytest.importorskip("flask")

@@ -12,7 +12,7 @@ from trajgap.compare.audits import CaseAudit, audit
 from trajgap.compare.audits.draft import advise
 from trajgap.compare.audits.revision import edited
 from trajgap.compare.documents import Advice, ClaimVerdict, Urgency, Why
-from trajgap.compare.pages.claims import advised, against
+from trajgap.compare.pages.verdicts import advised, against
 from trajgap.problem import Case, Verdict, check, parse_case
 
 CONTRADICTED = paper(

@@ -34,8 +34,8 @@ from trajgap.compare.documents import (
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.readings import side_by_side
+from trajgap.compare.pages.rendering import markdown
 from trajgap.nlp import Evidence
 from trajgap.problem import evaluate, fit, load_case
 

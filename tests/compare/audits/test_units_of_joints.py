@@ -21,8 +21,9 @@ from trajgap.compare.audits.rules import GROUPS
 from trajgap.compare.audits.rules.clues import reading_clues
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Finding
-from trajgap.compare.pages.units import paper_units
-from trajgap.compare.pages.writer import case_page, page_text
+from trajgap.compare.pages.numbers import paper_units
+from trajgap.compare.pages.rendering import page_text
+from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures import jump_picture, motion_picture
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.document import problem_document

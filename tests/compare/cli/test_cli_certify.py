@@ -255,7 +255,7 @@ def test_each_question_has_files_of_its_own() -> None:
     for case, problem, reading in (("c", "p", "r"), ("c.p", "r", "x"), ("c", "p.r", "x")):
         for joint in (None, *JOINTS):
             asked = CertifiedQuestion(case, problem, reading, joint)
-            question = cli_certify.Question("", Any, asked, "")  # type: ignore[arg-type]
+            question = cli_certify.Question(Any, asked, "")  # type: ignore[arg-type]
             names[asked] = question.file
     files = [f"{name}{kind}.json" for name in names.values() for kind in ("", ".state")]
     # Some file systems do not tell capitals from small letters.

@@ -247,12 +247,12 @@ def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path
 def test_the_command_that_goes_on_still_exports(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from trajgap.compare.cli import study_command
+    from trajgap.compare import gaps
 
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(study_command, "run_study", interrupted)
+    monkeypatch.setattr(gaps, "run_study", interrupted)
     code, out, err = run(
         "study", "few.toml", "--export", "a b.csv", "--export", "few.ioh", "--workers", "1"
     )

@@ -80,7 +80,7 @@ def test_what_cannot_be_proved_again_in_time_is_not_thrown_away(
 
     monkeypatch.setattr(certifying, "Clock", Late)
     assert run("solve", *ONE, "--certify", "--gap", "0.2", "--time", "50")[0] == 0
-    assert limits == [50.0 + certifying._SPARE]
+    assert limits == [50.0 + 1.0]
     assert path.read_text() == narrow
     document["claim"]["lower"] = "0"
     for wrong in (document, {**document, "claim": {**document["claim"], "upper": None}}):

@@ -13,7 +13,13 @@ import pytest
 from support.checkout import ROOT
 from support.command_line import Run, strict
 from support.documents import validator
-from trajgap.problem.suite import list_instances, load_instance, plain_text, suite_version
+from trajgap.problem.suite import (
+    BenchmarkInstance,
+    list_instances,
+    load_instance,
+    plain_text,
+    suite_version,
+)
 
 
 def test_the_table_lists_every_instance(run: Run) -> None:
@@ -82,7 +88,7 @@ def test_an_export_is_whole_and_needs_no_trajgap(run: Run, folder: Path) -> None
 def test_show_of_an_instance_whose_certificate_is_not_shipped(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("trajgap.compare.cli.suite_command._certificate", lambda one: None)
+    monkeypatch.setattr(BenchmarkInstance, "certificate_file", lambda _: None)
     one = load_instance("353-irb460")
     out = run.done("suite", "show", one.name)
     assert one.command in out.splitlines()

@@ -30,7 +30,7 @@ from trajgap.compare.documents import (
     show_document,
     solve_result,
 )
-from trajgap.compare.documents.certified import outwards
+from trajgap.compare.documents.checked import outwards
 from trajgap.compare.documents.export import SCHEMA_FILE, named
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.retiming.toppra_check import Retiming, retime

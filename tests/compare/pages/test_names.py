@@ -12,7 +12,7 @@ from support.made_up import entry, paper, row
 from trajgap.compare import write_report
 from trajgap.compare.blocks import Cell, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages import check_report_folder
-from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.rendering import markdown
 from trajgap.problem import file_name, parse_case
 
 

@@ -28,11 +28,9 @@ from trajgap.compare.documents import (
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.environment import environment, style
-from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.motions_shown import _totals
-from trajgap.compare.pages.numbers import where_time_goes
-from trajgap.compare.pages.units import both_units
+from trajgap.compare.pages.numbers import both_units, where_time_goes
+from trajgap.compare.pages.rendering import environment, markdown, style
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case
 

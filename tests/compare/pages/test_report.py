@@ -11,7 +11,7 @@ from support.drawn import sketched
 from support.hostile import ID, IMAGE
 from support.page_tree import Tree
 from trajgap.compare import AuditReport
-from trajgap.compare.blocks import Claimed, Page, slug
+from trajgap.compare.blocks import Claimed, doi_link, slug
 from trajgap.compare.documents import (
     CARD_WORDS,
     Basis,
@@ -21,7 +21,7 @@ from trajgap.compare.documents import (
     Keeping,
     qualified,
 )
-from trajgap.compare.pages.markdown_text import plain
+from trajgap.compare.pages.rendering import plain
 from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence
 
@@ -65,12 +65,9 @@ def test_a_page_carries_its_icon_so_that_no_browser_asks_a_server_for_one(
 
 
 def test_a_doi_is_a_link_only_if_it_is_one() -> None:
-    hostile = Page("p", "t", (), doi=f"10.1000/{IMAGE}")
-    assert hostile.doi_link == ""
-    assert Page("p", "t", (), doi="10.12677/mos.2024.136535").doi_link == (
-        "https://doi.org/10.12677/mos.2024.136535"
-    )
-    assert Page("p", "t", (), doi="10.1000/a#b?c").doi_link == "https://doi.org/10.1000/a%23b%3Fc"
+    assert doi_link(f"10.1000/{IMAGE}") == ""
+    assert doi_link("10.12677/mos.2024.136535") == "https://doi.org/10.12677/mos.2024.136535"
+    assert doi_link("10.1000/a#b?c") == "https://doi.org/10.1000/a%23b%3Fc"
 
 
 def test_every_link_leads_somewhere(folder: Path) -> None:

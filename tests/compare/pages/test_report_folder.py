@@ -19,7 +19,7 @@ from support.studies import source
 from trajgap.compare import AuditReport, write_report
 from trajgap.compare.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, table
 from trajgap.compare.pages import crate_of
-from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.rendering import markdown
 from trajgap.compare.pages.writer import MARK, report_files
 from trajgap.problem import TrajgapError, load_case
 from trajgap.verify import verify_certificate

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.drawn import DURATIONS, PROBLEM, STEPS, fall
 from trajgap.compare.pictures.drawing import Picture
+from trajgap.compare.pictures.gap_bands import waterfall_picture
 from trajgap.compare.pictures.motion import motion_picture
 from trajgap.compare.pictures.searches import convergence, endings
 from trajgap.compare.pictures.totals_map import landscape
-from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.heuristics import PSO, JointRuns, Run, run, run_per_joint
 from trajgap.nlp import Solution, solve
 from trajgap.problem import Limits, Problem, check

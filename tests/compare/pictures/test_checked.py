@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from support.drawn import sound
-from trajgap.compare.pictures.checked import checked_picture
 from trajgap.compare.pictures.drawing import INK, ORANGE, RED, Picture, picture_bytes
-from trajgap.compare.pictures.traced import beyond, joined_stretches, thinned, without
+from trajgap.compare.pictures.motion import checked_picture
+from trajgap.compare.pictures.panels import beyond, joined_stretches, thinned, without
 from trajgap.problem import Array, Trajectory
 from trajgap.problem.motions import (
     JointLimits,

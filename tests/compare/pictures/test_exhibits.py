@@ -13,10 +13,15 @@ from trajgap.compare.audits.rules.printed_vertices import Vertex
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures.drawing import Picture, drawing
-from trajgap.compare.pictures.jumps import jump_picture, velocity_jumps
-from trajgap.compare.pictures.labels import place_labels
-from trajgap.compare.pictures.polygon import polygon_picture
-from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
+from trajgap.compare.pictures.exhibits import (
+    TentScatter,
+    jump_picture,
+    polygon_picture,
+    tent_picture,
+    tent_scatter,
+    velocity_jumps,
+)
+from trajgap.compare.pictures.workspace import place_labels
 from trajgap.problem import Limits, Printed, Problem, TrajgapError, file_name, three_five_three
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
 from trajgap.problem.printed.rounded import Interval

@@ -13,9 +13,9 @@ import pytest
 from matplotlib.text import Text
 from support.drawn import DURATIONS, STEPS, fall, sound
 from trajgap.compare.pictures.drawing import THEME, Picture, embedded, shown, svg
+from trajgap.compare.pictures.gap_bands import waterfall_picture
 from trajgap.compare.pictures.motion import motion_picture
-from trajgap.compare.pictures.traced import beyond
-from trajgap.compare.pictures.waterfall import waterfall_picture
+from trajgap.compare.pictures.panels import beyond
 from trajgap.problem import Limits, Problem, TrajgapError, extrema, fit
 from trajgap.problem.curves.uniform import TimedUniformBSpline
 
@@ -48,7 +48,7 @@ def test_a_picture_does_not_depend_on_the_users_settings_or_on_earlier_pictures(
 
 
 def test_pyplot_is_never_loaded() -> None:
-    modules = ["drawing", "motion", "totals_map", "searches", "waterfall"]
+    modules = ["drawing", "motion", "totals_map", "searches", "gap_bands"]
     program = "import sys\n" + "".join(f"import trajgap.compare.pictures.{m}\n" for m in modules)
     program += "sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

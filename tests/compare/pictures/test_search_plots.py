@@ -10,9 +10,9 @@ from support.checkout import ROOT
 from support.drawn import DURATIONS, STEPS, fall
 from trajgap.compare.documents import Step, Why
 from trajgap.compare.pictures.drawing import DARK, THEME, Picture, svg
+from trajgap.compare.pictures.gap_bands import waterfall_picture
 from trajgap.compare.pictures.searches import convergence, endings
 from trajgap.compare.pictures.totals_map import landscape, tight_total
-from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.heuristics import JointRuns, Run
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import Limits, Problem, TrajgapError, check, cubic_spline, quintic_spline

@@ -6,7 +6,7 @@ from trajgap.compare.blocks import Grid, Prose
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.compare.sphinx import Results
 from trajgap.compare.sphinx.directives import readings_of, wanted_words
-from trajgap.compare.sphinx.suite import instances_of
+from trajgap.compare.sphinx.results import instances_of
 from trajgap.problem import TrajgapError
 from trajgap.problem.suite import list_instances, select_curve
 

@@ -17,8 +17,7 @@ from trajgap.compare.audits import RULES
 from trajgap.compare.pictures import tent_picture, tent_scatter
 from trajgap.compare.sphinx import Results
 from trajgap.compare.sphinx.gallery import scrape_pictures
-from trajgap.compare.sphinx.proofs import proved_again
-from trajgap.compare.sphinx.suite import PROVED_WITHIN
+from trajgap.compare.sphinx.results import PROVED_WITHIN, proved_again
 from trajgap.problem import TrajgapError, case_schema, file_name, published_ids
 from trajgap.problem.suite import list_instances
 

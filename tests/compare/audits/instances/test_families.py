@@ -28,10 +28,10 @@ from trajgap.compare.audits.instances.result import (
 from trajgap.compare.audits.rules.on_instances import _under, judge_instances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Effect, Procedure, json_text
-from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.rendering import markdown
 from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
-from trajgap.compare.pictures.instances import instances_picture
+from trajgap.compare.pictures.searches import instances_picture
 from trajgap.nlp import Evidence
 from trajgap.problem import Case, TrajgapError, evaluate, forward_kinematics, load_case, parse_case
 from trajgap.problem.cases.instances import instance_waypoints
