@@ -25,6 +25,7 @@ _NUMBERS = 2_000_000
 """In the largest array of a batch: 16 MB, beyond which numpy is no faster."""
 _LEAVES = 512
 """In a batch at most: from there on numpy's own work outweighs the calls."""
+np.empty(2 * _NUMBERS)  # the C library keeps what arrays up to the largest one freed took: 64 MB
 SLACK = 1e-12
 """Of the sides of a box: far more than the rounding of the sums that shrink it."""
 
@@ -167,17 +168,24 @@ def shapes(rows: Rows, powers: int, places: int) -> Array:
 def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:
     """At most gᵀδ + ½ δᵀBδ for all |δ_k| ≤ e_k, box by box.
 
-    In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so products of two take from the squares.
+    In x = δ/e: b x_k x_m ≥ −½|b|(x_k² + x_m²), so products of two take from the squares. Where
+    b s_k s_m > 0 at the corner s of the least linear part, b x_k x_m ≥ |b|(s_k x_k + s_m x_m − 1)
+    too: half the sum of both, or a share of it, lends |b| to the least value, as long as that stays
+    in this corner.
     """
     each = np.arange(e.shape[1])
     bend = bend * e[:, :, None] * e[:, None, :]
     own = bend[:, each, each]
     bend[:, each, each] = 0.0
     own = own - np.abs(bend).sum(axis=2)
-    lean = np.abs(gradient) * e
+    lean, vertex = np.abs(gradient) * e, np.where(gradient > 0.0, -1.0, 1.0)
+    spare = np.clip(0.5 * (lean - own), 0.0, lean)
+    alike = np.maximum(bend * vertex[:, :, None] * vertex[:, None, :], 0.0)
+    given = np.minimum(spare / np.maximum(alike.sum(axis=2), 1e-300), 1.0)
+    lent = (alike * np.minimum(given[:, :, None], given[:, None, :])).sum(axis=2)
     inside = lean < own
     turn = -0.5 * lean * lean / np.where(inside, own, 1.0)
-    return np.asarray(np.where(inside, turn, 0.5 * own - lean).sum(axis=1))
+    return np.asarray((np.where(inside, turn, 0.5 * own - lean) + lent).sum(axis=1))
 
 
 def most_of_cubes(cubes: Array) -> Array:

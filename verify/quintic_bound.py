@@ -85,25 +85,23 @@ class Centre:
         self.e = 0.5 * (ends[1] - ends[0]) + 4.0 * SLACK * ends[1]
         need(bool((self.e < WIDEST * self.r).all()), "a leaf that is too wide is not proved")
         self._parts()
-        # x⁰ and X by joint, and how M acts on x⁰.
-        steps = task.steps.T[:, :, None]
-        load = self.load[:2, :, None] * steps
-        self.x0 = self._solve(load[0].sum(axis=2))
-        self.on_x0 = self._acting(self.x0)
-        self.rise = load[1] - np.swapaxes(self.on_x0[1], 1, 2)
+        # x⁰ and X by joint.
+        steps = task.steps[:, :, None]
+        self.x0 = self._solve(self._joined(self.load[0, :, None] * np.swapaxes(steps, 0, 1)))
+        moved = self._parted(self.x0) @ self.blocks[1]
+        self.rise = self._placed(np.swapaxes(self.load[1, :, :, None] * steps - moved, 1, 2))
         flat = self.rise.reshape(self.size, -1, self.rise.shape[-1])
         self.slope = self._solve(flat).reshape(self.rise.shape)
 
     def _parts(self) -> None:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
-        self.places = []
-        for k in range(self.n):
-            a = np.array([a for a in range(4) if 0 < k + a % 2 < self.n])
-            self.places.append((a, 2 * (k + a % 2 - 1) + a // 2))
+        # Unknowns of v₀, v₁, a₀ and a₁ of each segment; the last place is for those that are 0.
+        way, order = np.arange(self.n)[:, None] + [0, 1, 0, 1], np.array([0, 0, 1, 1])
+        self.places = np.where(way % self.n, 2 * (way - 1) + order, 2 * self.n - 2)
         powers, top = (x[..., None] ** np.arange(5) for x in (self.r, self.r + self.e))
         self.blocks = _taylor(STIFFNESS, POWERS, powers)[:4]
         self.m0 = self._assembled(self.blocks[0])
-        self.load = self._placed(_taylor(LOAD, LOAD_POWERS, powers))
+        self.load = _taylor(LOAD, LOAD_POWERS, powers)
         self.stiff_top = self._assembled(np.abs(STIFFNESS) * top[..., POWERS])
         self.load_top = self._placed(np.abs(LOAD) * top[..., LOAD_POWERS])
         try:
@@ -111,37 +109,53 @@ class Centre:
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
 
+    def _parted(self, vectors: Array) -> Array:
+        """What vectors (leaf, vector, unknown) say of each segment: (leaf, segment, vector, 4)."""
+        found = np.zeros((*vectors.shape[:-1], vectors.shape[-1] + 1))
+        found[..., :-1] = vectors
+        return np.swapaxes(found.take(self.places, axis=-1), 1, 2)
+
     def _placed(self, own: Array) -> Array:
-        """What is said of v₀, v₁, a₀ and a₁ of each segment (..., segment, 4), by unknown."""
-        found = np.zeros((*own.shape[:-1], 2 * self.n - 2))
-        for k, (a, i) in enumerate(self.places):
-            found[..., k, i] = own[..., k, a]
-        return found
+        """What is said of each segment (..., segment, 4), by unknown: (..., segment, unknown)."""
+        found = np.zeros((*own.shape[:-1], 2 * self.n - 1))
+        for k, i in enumerate(self.places):
+            found[..., k, i] = own[..., k, :]
+        return found[..., :-1]
+
+    def _joined(self, own: Array) -> Array:
+        """The same, all segments together: (..., unknown)."""
+        found = np.zeros((*own.shape[:-2], 2 * self.n - 1))
+        for k, i in enumerate(self.places):
+            found[..., i] += own[..., k, :]
+        return found[..., :-1]
 
     def _assembled(self, blocks: Array) -> Array:
         """The matrix of all unknowns from those of the segments (leaf, segment, 4, 4)."""
-        found = np.zeros((len(blocks), 2 * self.n - 2, 2 * self.n - 2))
-        for k, (a, i) in enumerate(self.places):
-            found[:, i[:, None], i] += blocks[:, k, a[:, None], a]
-        return found
+        found = np.zeros((len(blocks), 2 * self.n - 1, 2 * self.n - 1))
+        for k, i in enumerate(self.places):
+            found[:, i[:, None], i] += blocks[:, k]
+        return found[:, :-1, :-1]
 
     def pick(self, leaf: NDArray[Any], joint: int | slice = slice(None)) -> Centre:
         """Some of the boxes, and of one joint."""
         own = copy(self)
-        own.r, own.e, own.m0, own.root = (x[leaf] for x in (self.r, self.e, self.m0, self.root))
-        own.load_top, own.stiff_top = self.load_top[leaf], self.stiff_top[leaf]
-        own.x0, own.rise, own.slope = (x[:, joint][leaf] for x in (self.x0, self.rise, self.slope))
-        own.blocks, own.load = self.blocks[:, leaf], self.load[:, leaf]
-        own.on_x0, own.size = self.on_x0[:, :, :, joint][:, leaf], len(own.r)
+        for name, value in vars(self).items():
+            if name in ("blocks", "load"):
+                setattr(own, name, value[:, leaf])
+            elif name in ("x0", "rise", "slope"):
+                setattr(own, name, value[:, joint][leaf])
+            elif isinstance(value, np.ndarray) and name != "places":
+                setattr(own, name, value[leaf])
+        own.size = len(own.r)
         return own
 
-    def _acting(self, vectors: Array, first: int = 0) -> Array:
-        """M_k,o v of vectors (leaf, vector, unknown) for o ≥ first: (o, leaf, segment, …)."""
-        own = np.zeros((self.size, self.n, vectors.shape[1], 4))
-        for k, (a, i) in enumerate(self.places):
-            own[:, k][..., a] = vectors[..., i]
-        moved = own @ np.swapaxes(self.blocks[first:], 3, 4)
-        return np.swapaxes(self._placed(np.swapaxes(moved, 2, 3)), 2, 3)
+    def _frames(self) -> None:
+        """R, R M_k,o for o ≥ 1, and R b_k,o for o ≥ 2, by what is said of each segment."""
+        root = np.swapaxes(self._parted(self.root), 2, 3)
+        turned = np.moveaxis(self.blocks[1:] @ root, 0, 3)
+        self.turned = turned.reshape(*turned.shape[:3], -1)
+        self.pushed = np.moveaxis(self.load[2:], 0, 2) @ root
+        self.sides = root
 
     def _framed(self, matrix: Array) -> tuple[Array, Array]:
         """R A Rᵀ, and the largest row sum of its rounding."""
@@ -178,15 +192,6 @@ class Centre:
         least = (1.0 - wide) * (1.0 - root) ** 2 * (1.0 - off) * (1.0 - 1e-9)
         most = (1.0 + wide) * (1.0 + root) ** 2 * (1.0 + off) * (1.0 + 1e-9)
         return 1.0 / most, 1.0 / least
-
-    def _rooted(self, vectors: Array) -> Array:
-        """R v of vectors (leaf, ..., unknowns)."""
-        flat = vectors.reshape(self.size, -1, vectors.shape[-1])
-        return np.asarray((flat @ np.swapaxes(self.root, 1, 2)).reshape(vectors.shape))
-
-    def _energy(self, vectors: Array) -> Array:
-        """‖R v‖ of vectors (leaf, ..., unknowns)."""
-        return np.asarray(np.linalg.norm(self._rooted(vectors), axis=-1))
 
     def _solve(self, right: Array) -> Array:
         half = right @ np.swapaxes(self.root, 1, 2)
@@ -240,6 +245,7 @@ class Centre:
             "size": size,
             "blame": np.zeros((self.size, n)),
         }
+        self._frames()
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
         speeds = np.array([1.0, 1.0, 0.0, 0.0])
@@ -252,7 +258,7 @@ class Centre:
             phi = np.zeros((2, own.size, n, 4))
             np.add.at(phi[0], (at, k[mine]), each)
             np.add.at(phi[1], (at, k[mine]), np.abs(each))
-            phi = own._placed(np.stack([phi * speeds, phi * (1.0 - speeds)]))
+            phi = np.stack([phi * speeds, phi * (1.0 - speeds)])
             parts = own._joint(task.steps[:, joint], phi, middle[leaf], spread[leaf])
             for name, part in parts.items():
                 sums[name][leaf] += part
@@ -274,53 +280,59 @@ class Centre:
         in absolute values. ``middle`` and ``spread`` are ½(c + s) and ½(c − s).
         """
         n, r, e, (speed, bend) = self.n, self.r, self.e, phi
-        load = self.load * step[:, None]
-        x0, on_x0, rise, slope = self.x0, self.on_x0, self.rise, self.slope
+        x0, rise, slope = self.x0, self.rise, self.slope
         full = bend[0] + speed[0] * r[:, :, None]
-        mu = self._solve(full.sum(axis=1)[:, None])
-        on_mu, mu = self._acting(mu, 1)[:, :, :, 0], mu[:, 0]
+        high = self._joined(bend[1] + speed[1] * (r + e)[:, :, None])
+        right = self._joined(full)
+        mu = self._solve(right[:, None])
+        own = self._parted(np.concatenate([slope, x0[:, None], mu], axis=1))
+        on_slope, on_x0, on_mu = np.split(
+            (own @ self.turned).reshape(self.size, n, n + 2, 3, -1), [n, n + 1], axis=2
+        )
+        of_slope, of_x0, of_mu, mu = own[:, :, :n], own[:, :, n], own[:, :, n + 1], mu[:, 0]
         wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
-        reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
+        reach = np.einsum("lki,k->li", self.load_top, np.abs(step))
         reach += np.einsum("lij,lj->li", self.stiff_top, wide)
         # π: constant, then Taylor parts of each segment.
-        rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
-        gain = -on_mu
-        gain[0] += speed[0]
-        high = bend[1] + speed[1] * (r + e)[:, :, None]
-        weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
-        outer = np.abs(self.root)
+        rest = right - np.einsum("lij,lj->li", self.m0, mu)
+        weak = high + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
         loose = np.abs(rest) + ROUND * weak
-        later = (self._energy(gain[2]) * e**3).sum(axis=1)
+        swift = (speed[0][:, :, None] @ self.sides)[:, :, 0]
         adjoint = Part(
-            self._rooted(gain[0]) * e[:, :, None],
-            self._rooted(gain[1]) * (e**2)[:, :, None],
-            later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
+            (swift - on_mu[:, :, 0, 0]) * e[:, :, None],
+            on_mu[:, :, 0, 1] * -(e**2)[:, :, None],
+            (_length(on_mu[:, :, 0, 2]) * e**3).sum(axis=1) + self._loosely(loose),
         )
         # ρ: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
-        pulled = self._acting(slope, 1)
-        zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
-        linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
+        zero = self._joined(self.load[0] * step[:, None])
+        zero -= np.einsum("lij,lj->li", self.m0, x0)
+        linear = rise - slope @ self.m0
         loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
         each, (k, m) = np.arange(n), _pairs(n)
-        square = -pulled[0] - np.swapaxes(pulled[0], 1, 2)
-        square[:, each, each] = load[2] - on_x0[2] - pulled[0][:, each, each]
-        third, fourth = -pulled[1], -pulled[2]
-        third[:, each, each] += load[3] - on_x0[3]
-        fourth[:, each, each] += load[4]
+        alone = self.pushed * step[:, None, None]
+        alone[:, :, :2] -= on_x0[:, :, 0, 1:]
+        flat = np.moveaxis(on_slope, 3, 0).reshape(3, self.size, n * n, -1)
+        square = -flat[0].take(n * k + m, axis=1)
+        square[:, n:] -= flat[0].take((n * m + k)[n:], axis=1)
+        square[:, :n] += alone[:, :, 0]
+        third, fourth = -flat[1:]
+        third[:, :: n + 1] += alone[:, :, 1]
+        fourth[:, :: n + 1] += alone[:, :, 2]
         wide_3 = e[:, :, None] ** 2 * e[:, None]
-        later = (self._energy(fourth) * wide_3 * e[:, :, None]).sum(axis=(1, 2))
-        third = self._rooted(third) * wide_3[..., None]
+        flat_3 = wide_3.reshape(self.size, -1)
         residual = Part(
-            self._rooted(square[:, k, m]) * (e[:, k] * e[:, m])[:, :, None],
-            third.reshape(self.size, n * n, -1),
-            later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
+            square * (e.take(k, axis=1) * e.take(m, axis=1))[:, :, None],
+            third * flat_3[:, :, None],
+            (_length(fourth) * flat_3 * e.repeat(n, axis=1)).sum(axis=1) + self._loosely(loose),
         )
-        moved = load - np.concatenate([on_x0, 0.0 * on_x0[:1]])
-        alone = np.einsum("li,olki->lok", mu, moved)
-        alone[:, 0] += np.einsum("lki,li->lk", full, x0)
-        alone[:, 1] += np.einsum("lki,li->lk", speed[0], x0)
-        mixed = np.einsum("olki,lmi->olkm", gain, slope)
+        moved = (self.blocks @ of_mu[..., None])[..., 0]
+        curve = np.einsum("olka,lka->lok", self.load, of_mu) * step
+        curve[:, :4] -= np.einsum("olka,lka->lok", moved, of_x0)
+        curve[:, 0] += np.einsum("lka,lka->lk", full, of_x0)
+        curve[:, 1] += np.einsum("lka,lka->lk", speed[0], of_x0)
+        moved[1] -= speed[0]
+        mixed = -(of_slope @ moved[1:, ..., None])[..., 0]
         cubes = np.zeros((self.size, n, n, n))
         both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2)
         cubes[:, :, k, m] = both * middle[:, None, None]
@@ -331,14 +343,23 @@ class Centre:
         blame = (residual.shares * adjoint.most[:, None]) @ (np.eye(n)[k] + np.eye(n)[m])
         blame += adjoint.shares * residual.most[:, None]
         return {
-            "alone": alone,
+            "alone": curve,
             "first": np.einsum("li,lmi->lm", rest, slope),
             "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
             "cubes": cubes,
             "error": error,
-            "size": (high.sum(axis=1) * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
+            "size": (high * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
             "blame": spread[:, None] * blame,
         }
+
+    def _loosely(self, sizes: Array) -> Array:
+        """The largest ‖R v‖ of vectors v of these sizes."""
+        return _length(np.einsum("lij,lj->li", np.abs(self.root), sizes))
+
+
+def _length(vectors: Array) -> Array:
+    """Norms along the last axis."""
+    return np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
 
 
 def _taylor(factors: Array, exponents: Rows, powers: Array) -> Array:
@@ -369,8 +390,8 @@ class Part:
 
     def __init__(self, leading: Array, following: Array, later: Array) -> None:
         self.leading, self.following, self.later = leading, following, later
-        self.lengths: Array = np.linalg.norm(leading, axis=2).sum(axis=1)
-        self.second: Array = np.linalg.norm(following, axis=2).sum(axis=1)
+        self.lengths = _length(leading).sum(axis=1)
+        self.second = _length(following).sum(axis=1)
         # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
         each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
         self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * self.lengths**2)

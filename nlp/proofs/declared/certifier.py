@@ -27,7 +27,7 @@ from ..exact import ExactProblem, decimal
 from ..rounding import down
 from ..session import Ladder, OutOfTime, Session, Shorter
 from .rows import NearLimits
-from .search import BoxSearch, Bundle, Curves, Found, Middle, TooSmall
+from .search import BoxSearch, Curves, Found, Middle, TooSmall
 
 _KIND = "declared"
 """Of the proof, as documents name it."""
@@ -162,7 +162,7 @@ class BoxStages:
             lambda waiting, done: session.report(waiting, before + done),
         )
         try:
-            grow(boxes, [Bundle(((1, curves.kind.root()),))], session)
+            grow(boxes, [[(1, curves.kind.root())]], session)
         except TooSmall:
             raise OutOfTime from None
         return Tree(target, head, boxes.found)

@@ -99,6 +99,11 @@ class Found:
     cuts: dict[int, int] = field(default_factory=dict)
     leaves: dict[int, Leaf] = field(default_factory=dict)
 
+    @property
+    def boxes(self) -> int:
+        """How many were visited."""
+        return len(self.cuts) + len(self.leaves)
+
     def document(self) -> dict[str, list[Any]]:
         """Rows, tree and, if there are any, windows.
 
@@ -142,27 +147,15 @@ def _places(used: Iterable[Any]) -> dict[Any, int]:
 
 
 @dataclass(frozen=True, eq=False)
-class Bundle:
-    """Boxes to go on from, the next one last.
-
-    ``place`` is where they stand among all: sorted, bundles are worked on as one stack would be.
-    """
-
-    cells: tuple[Cell, ...]
-    place: tuple[int, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
 class Part:
     """What was done below a bundle, the boxes that are left, and directions that may be shorter."""
 
     found: Found
     rest: list[Cell]
-    boxes: int
     directions: list[Array]
 
 
-def search_part(curves: Curves, bundle: Bundle) -> Part:
+def search_part(curves: Curves, cells: list[Cell]) -> Part:
     """Exclude and cut boxes until none is left, a part's boxes are visited or time is up.
 
     Returns
@@ -174,11 +167,10 @@ def search_part(curves: Curves, bundle: Bundle) -> Part:
     ------
     TooSmall
     """
-    kind, found, waiting, done = curves.kind, Found(), list(bundle.cells), 0
+    kind, found, waiting = curves.kind, Found(), list(cells)
     directions: list[Array] = []
-    while waiting and done < curves.part:
+    while waiting and found.boxes < curves.part:
         batch, waiting = waiting[-kind.batch :], waiting[: -kind.batch]
-        done += len(batch)
         full = []
         for node, box in batch:
             if any(a > b for a, b in zip(*box, strict=True)):
@@ -201,7 +193,7 @@ def search_part(curves: Curves, bundle: Bundle) -> Part:
                 waiting += [(2 * node, parts[0]), (2 * node + 1, parts[1])]
         if time_up():
             break
-    return Part(found, waiting, done, directions)
+    return Part(found, waiting, directions)
 
 
 def _judged(curves: Curves, sides: Array) -> tuple[list[Leaf | None], list[int], Array]:
@@ -280,7 +272,7 @@ def _excluded(
         yield int(good[at]), (int(taus[at]), pairs)
 
 
-class BoxSearch(Branching[Bundle]):
+class BoxSearch(Branching[list[Cell]]):
     """Search below boxes, part by part.
 
     Parameters
@@ -294,7 +286,8 @@ class BoxSearch(Branching[Bundle]):
     Attributes
     ----------
     least : int
-        Boxes of a bundle, if there are as many: with fewer, calls cost more than what they compute.
+        Boxes that are worked on together, if there are as many: with fewer, calls cost more than
+        what they compute.
     """
 
     ahead, least = 8, 256
@@ -307,32 +300,36 @@ class BoxSearch(Branching[Bundle]):
         watch: Callable[[int, int], None],
     ) -> None:
         self.common, self._look, self._watch = Common(curves), look, watch
-        self.found, self._left, self._done = Found(), 1, 0
+        self.found, self._left, self._begun, self._away = Found(), 1, 0, 1
+        self._rest: list[Cell] = []
 
-    def order(self, box: Bundle) -> tuple[int, ...]:
-        """As one stack would have it."""
-        return box.place
+    def order(self, box: list[Cell]) -> int:
+        """The last ones first: few wait."""
+        self._begun -= 1
+        return self._begun
 
-    def wanted(self, box: Bundle) -> bool:
+    def wanted(self, box: list[Cell]) -> bool:
         """Every box is."""
         return True
 
-    def given(self, box: Bundle) -> tuple[Bundle]:
+    def given(self, box: list[Cell]) -> tuple[list[Cell]]:
         """The boxes."""
         return (box,)
 
-    def taken(self, box: Bundle, found: Part) -> Iterator[Bundle]:
+    def taken(self, box: list[Cell], found: Part) -> Iterator[list[Cell]]:
         """What is left of a part, once its directions were looked at."""
-        self._left += len(found.rest) - len(box.cells)
-        self._done += found.boxes
+        self._left += len(found.rest) - len(box)
         self.found.cuts.update(found.found.cuts)
         self.found.leaves.update(found.found.leaves)
         if found.directions:
             self._look(np.concatenate(found.directions))
-        size = max(self.least, -(-len(found.rest) // self.ahead))
-        for i, at in enumerate(range(len(found.rest), 0, -size)):
-            yield Bundle(tuple(found.rest[max(0, at - size) : at]), (*box.place, i))
+        self._rest += found.rest
+        self._away -= 1
+        while len(self._rest) >= self.least or (self._rest and not self._away):
+            self._away += 1
+            yield self._rest[-self.least :]
+            del self._rest[-self.least :]
 
     def look(self, waiting: int) -> None:
         """Report."""
-        self._watch(self._left, self._done)
+        self._watch(self._left, self.found.boxes)

@@ -64,7 +64,7 @@ def found_of(
 ) -> search.Found:
     boxes = search.BoxSearch(curves, look, watch)
     boxes.least = 4
-    grow(boxes, [search.Bundle(((1, curves.kind.root()),))], one)
+    grow(boxes, [[(1, curves.kind.root())]], one)
     return boxes.found
 
 
@@ -142,11 +142,11 @@ def test_the_clock_ends_it_and_leaves_nothing_waiting(monkeypatch: pytest.Monkey
 
 def test_a_part_ends_with_the_time_of_its_search() -> None:
     curves = curves_of(QuinticStages, part=10**6)
-    root = search.Bundle(((1, curves.kind.root()),))
-    assert search.search_part(curves, root).boxes > 100
+    root = [(1, curves.kind.root())]
+    assert search.search_part(curves, root).found.boxes > 100
     one = session(seconds=1e-9)
     with one.searching():
-        assert search.search_part(curves, root).boxes == 1
+        assert search.search_part(curves, root).found.boxes == 1
     with pytest.raises(OutOfTime):
         found_of(curves, one)
 
