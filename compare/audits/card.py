@@ -69,28 +69,34 @@ def verdict_card(
     # Where an error on the card says which percentage it refutes, no line says so again.
     tells = {" ".join(plainly(study.case, c, far)) for c in grave if _tells(study, c, improved)}
     covered = not tells.isdisjoint(errors)
-    if improvement is not None and not covered:
+    # That an improvement cannot be checked makes room for what contradicts itself.
+    last = all(words[one].verdict is ClaimVerdict.NOT_CHECKABLE for one in improved)
+    if improvement is not None and not covered and not last:
         left -= count_words(improvement)
         errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
+    if not more:
+        warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
+        briefly = [" ".join(plainly(study.case, cause, far, brief=True)) for cause in warned]
+        fitting = _fitting(briefly, left)[0]
+        errors, left = (*errors, *fitting), left - sum(map(count_words, fitting))
+    unclaimed = "no improvement is claimed"
+    if improvement is not None and not covered and last:
+        if count_words(improvement) > left:
+            improvement, unclaimed = None, "there is no room for it"
+        left -= count_words(improvement or "")
     explanation = _explanation(causes, left)
     left -= count_words(explanation or "")
     said_of_runs = (str(runs[0]), runs[0].briefly) if runs else ()
     near = next((one for one in said_of_runs if one and count_words(one) <= left), None)
     left -= count_words(near or "")
-    if not more:
-        warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
-        briefly = [" ".join(plainly(study.case, cause, far, brief=True)) for cause in warned]
-        errors += _fitting(briefly, left)[0]
     return VerdictCard(
         limits=limits,
         optimum=optimum,
         reached=known(
             near, "no run of the paper's algorithm is committed, or there is no room for it"
         ),
-        improvement=Why("an error above covers it")
-        if covered
-        else known(improvement, "no improvement is claimed"),
+        improvement=Why("an error above covers it") if covered else known(improvement, unclaimed),
         errors=errors,
         more=more,
         explanation=known(explanation, "none that was tried fits, or there is no room for it"),
@@ -143,6 +149,10 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
 # --- improvement ----------------------------------------------------------------------------------
 
 
+def _caveats(judgement: Judgement) -> set[CaveatKind]:
+    return {caveat.kind for caveat in judgement.caveats}
+
+
 def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | None, set[str]]:
     """Whether the claimed improvement follows, and the claims that the sentence speaks of."""
     improved = (c for c in study.case.claims if isinstance(c, ImprovementClaim))
@@ -151,6 +161,11 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
     claim = next(iter([*counted, *every]), None)
     if claim is None:
         return None, set()
+    doubtful = {c.id for c in every if CaveatKind.DOUBTED in _caveats(words[c.id])}
+    supported = {c.id for c in counted if words[c.id].verdict is ClaimVerdict.SUPPORTED} - doubtful
+    if len(supported) == len(counted) > 1:
+        which = "Both" if len(supported) == 2 else f"All {len(supported)}"
+        return f"{which} claimed improvements follow from the printed totals.", supported
     unit = study.case.document.units.time or "s"
     shown = "improvement"
     if claim.percent is not None:
@@ -158,13 +173,9 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
     elif claim.seconds is not None:
         shown = f"saving of {claim.seconds} {unit}"
     judgement = words[claim.id]
-    doubted = any(c.kind is CaveatKind.DOUBTED for c in judgement.caveats)
-    if judgement.verdict is ClaimVerdict.SUPPORTED and shown != "improvement" and not doubted:
-        digits = f"{claim.percent} %" if claim.percent is not None else f"{claim.seconds} {unit}"
-        return f"The claimed {digits} follows from the printed totals.", {claim.id}
     what = {
         ClaimVerdict.SUPPORTED: "follows from the printed totals"
-        + (", which other printed numbers contradict" if doubted else ""),
+        + ", which other printed numbers contradict" * (claim.id in doubtful),
         ClaimVerdict.REFUTED: "does not follow from the printed totals",
         ClaimVerdict.INCONSISTENT: "contradicts other printed numbers",
         ClaimVerdict.DEPENDS: "depends on the reading",

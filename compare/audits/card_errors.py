@@ -17,7 +17,7 @@ from ..documents import (
     capital,
     quoted,
 )
-from .roots import TABLES
+from .roots import NO_PROFILE, TABLES
 from .stated import RowClaim, at_place, place
 
 
@@ -97,14 +97,17 @@ def _plain(
         "TG210": f"The durations {at_place(where)} break a limit",
         "TG211": f"A printed value does not follow from the printed durations ({where})",
         "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
-        "TG301": "Shortest times scale inversely with velocity limits: the printed two cannot both "
-        "be shortest",
+        "TG301": "Shortest times scale inversely with velocity limits, so the two printed times "
+        "cannot both be shortest",
         "TG304": f"A printed total is not that of its profile ({where})"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",
         "TG305": f"A printed total is not the shortest along its path ({where})",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
+    if head.kind == NO_PROFILE:
+        said = f"{capital(at_place(where))}, no profile has the printed plateau."
+        return (said, *own[1:]), False
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"
     return (own[:1] if sentence is None else (f"{capital(sentence)}.",)), False
@@ -143,7 +146,7 @@ def _whose(case: Case, head: Finding) -> str:
         return ""
     claim = case.claim(head.farthest)
     if claim.joint is not None and len(case.robot.joints) > 1:
-        return f"joint {claim.joint} takes "
+        return f"joint {claim.joint} alone takes "
     return f"{place(claim)} is "
 
 

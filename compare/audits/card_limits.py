@@ -49,13 +49,16 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     rows = [c for c in meant if c not in elsewhere and c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
     bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
-    if bare and not about and not any(isinstance(c, RowClaim) for c in case.claims):
-        return f"{unknown}: totals are printed, but durations are not.", set()
+    bare = bare and not any(isinstance(c, RowClaim) for c in case.claims)
+    without = f"{unknown}: totals are printed, but durations are not."
+    if bare and not about:
+        return without, set()
     apart = {c.id for c in elsewhere}
     if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
-        return f"{unknown}: the printed durations belong to another curve.", set()
+        curves = " and ".join(dict.fromkeys(str(c.other_curve) for c in elsewhere))
+        return f"{unknown}: the printed durations belong to another curve ({curves}).", set()
     if not rows and not about:
-        return "The text does not claim that any durations keep limits.", set()
+        return "The text does not say that the printed durations keep the limits.", set()
     own = own_results(case, rows)
     held = {c.id: _of_limits(study, c) for c in rows}
     stated = {c.id: words[c.id].readings for c in about}
@@ -74,13 +77,15 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     spoken = {*asked, *(c.id for c in about if not own or mine.issuperset(c.of))}
     jump = _jumping(words, [c.id for c in about] or asked)
     if kept == len(under):
-        return f"{_whose(study, own, held)} keep the limits{_within(study, own)}{jump}.", spoken
+        return f"{_kept(study, own, _whose(study, own, held))}{jump}.", spoken
     if broken == len(under):
         return f"{_broken(study, own, held)}.", spoken
     if not broken and not kept:
         where = _in_doubt(own, held)
-        return f"The printed digits do not decide whether the limits{where} are kept.", spoken
-    return f"{_differing(study, under, _in_doubt(own, held))}{jump}.", spoken
+        undecided = f"The printed digits do not decide whether the limits{where} are kept."
+        return without if bare else undecided, spoken
+    subject = f"The durations{_in_doubt(own, held)}" if own else "The motions"
+    return f"{subject} {_differing(study, under)}{jump}.", spoken
 
 
 def _places(rows: Sequence[AnyClaim]) -> str:
@@ -108,8 +113,8 @@ def _whose(study: Study, own: Sequence[RowClaim], held: _Held) -> str:
     )
 
 
-def _within(study: Study, own: Sequence[RowClaim]) -> str:
-    """Whether it takes the rounding of the digits to keep the limits, and of which row how much."""
+def _kept(study: Study, own: Sequence[RowClaim], whose: str) -> str:
+    """That limits are kept; if it takes the rounding of the digits, of which row how much."""
     found = []
     for row in own:
         for posed in printed_rows(study, row):
@@ -120,27 +125,28 @@ def _within(study: Study, own: Sequence[RowClaim]) -> str:
             ratio = 0.0 if checked.worst is None else checked.worst.ratio
             found.append((cut, ratio, row, checked.worst))
     if not found:
-        return ""
+        return f"{whose} keep the limits"
     cut, ratio, row, worst = max(found, key=lambda one: one[:2])
-    how = "if digits were cut off" if cut else "within rounding"
     where = "" if len(own) == 1 or not cut else f", those in {place(row)}"
     # Below one per cent the printed digits themselves end.
     if worst is None or ratio < 1.01 or worst.joint is None:
-        return f"{where} {how}"
-    share = 100 * (ratio - 1)
+        how = "if digits were cut off" if cut else "within rounding"
+        return f"{whose} keep the limits{where} {how}"
+    share, how = 100 * (ratio - 1), "are cut off to" if cut else "round to"
+    row_named = "" if len(own) == 1 else f" in {place(row)}"
     return (
-        f"{where} only {how}: as printed, the {worst.quantity} of joint {worst.joint} exceeds "
-        f"its limit by {share:.1f} %"
+        f"As printed{row_named}, the {worst.quantity} of joint {worst.joint} exceeds its limit by "
+        f"{share:.1f} %; some durations that {how} the printed digits keep every limit"
     )
 
 
-def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
-    """Under which readings limits are kept, broken or neither; an implausible one stands last."""
-    open_ = str(ClaimVerdict.NOT_CHECKABLE)
-    groups: dict[str, list[str]] = {"kept": [], "broken": [], open_: []}
+def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
+    """Under which readings durations keep or break limits; an implausible one stands last."""
+    keep, break_, open_ = "keep the limits", "break a limit", "cannot be checked"
+    groups: dict[str, list[str]] = {keep: [], break_: [], open_: []}
     for reading, words in found.items():
         broken, kept = ClaimVerdict.REFUTED in words, words == {ClaimVerdict.SUPPORTED}
-        groups["broken" if broken else "kept" if kept else open_].append(reading)
+        groups[break_ if broken else keep if kept else open_].append(reading)
     far = implausible(study)
     said = {word: own for word, own in groups.items() if own}
     if len(found) > FEW:
@@ -149,14 +155,15 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         shares += [
             noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
         ]
-        return f"Limits{where} are {', '.join(shares)}"
+        *most, last = shares
+        return f"{', '.join(most)}{',' if len(most) > 1 else ''} and {last}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts = []
     for word, own in ordered:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
         mark = " (implausible)" if all(one in far for one in own) else ""
         parts.append(f"{word} under {which}{mark}")
-    return f"Limits{where} are {' and '.join(parts)}"
+    return " and ".join(parts)
 
 
 def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:

@@ -56,7 +56,7 @@ def optimum_line(
         Whether the line before has said that way-points are in doubt.
     """
     if not study.has_problems:
-        return "No optimum can be computed."
+        return _beside_profiles(study, words) or "No optimum can be computed."
     main = [w for w in waterfalls if w.reading == study.main_reading]
     beside = [found for w in main for found in _beside(study, w)]
     if not beside or stands_in(study):
@@ -78,6 +78,12 @@ def _side_by_side(parts: Sequence[_Part]) -> str:
     above = [part for part in parts if isinstance(part, _Above)]
     if len(parts) == len(above) == FEW and len({part.name for part in above}) == 1:
         return _together(above)
+    aims = [part for part in parts if isinstance(part, _OtherAim)]
+    alike = {(aim.called, aim.certified, aim.ratios) for aim in aims}
+    if len(parts) == len(aims) == FEW and len(alike) == 1:
+        first, second = aims
+        shown, spans = first.shown + second.shown, first.spans + second.spans
+        return str(replace(first, shown=shown, spans=spans))
     agreeing = [part for part in parts if isinstance(part, _Agrees)]
     unknown = [part for part in parts if isinstance(part, _Unknown)]
     others = [part for part in parts if part not in agreeing and part not in unknown]
@@ -112,11 +118,8 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     the paper's.
     """
     timed = [c for c in study.case.claims if isinstance(c, TimeClaim) and c.id in words]
-    judged = [c for c in timed if isinstance(c, ProfiledClaim) and c.profile is not None]
-    if judged:
-        profiles = [*dict.fromkeys(str(c.profile) for c in judged)]
-        found = _beside_profiles([words[c.id].verdict for c in judged], profiles)
-        return found + _above_shortest(study, judged)
+    if profiled := _beside_profiles(study, words):
+        return profiled
     if along := along_paths(study, timed):
         return along
     curves = ", ".join(dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None))
@@ -137,8 +140,23 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     return f" One total of the algorithm is {longer[0]} above the shortest." if longer else ""
 
 
-def _beside_profiles(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) -> str:
-    """How many printed times agree with their profiles; what is open accuses none."""
+def _beside_profiles(study: Study, words: Mapping[str, Judgement]) -> str:
+    """How many printed times agree with their profiles; empty if no profile is named."""
+    timed = [
+        c
+        for c in study.case.claims
+        if isinstance(c, TimeClaim) and isinstance(c, ProfiledClaim)
+        if c.profile is not None and c.id in words
+    ]
+    if not timed:
+        return ""
+    profiles = [*dict.fromkeys(str(c.profile) for c in timed)]
+    agreeing = _agreeing([words[c.id].verdict for c in timed], profiles)
+    return agreeing + (_above_shortest(study, timed) if study.has_problems else "")
+
+
+def _agreeing(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) -> str:
+    """How many times agree with their profiles; what is open accuses none."""
     agree = verdicts.count(ClaimVerdict.SUPPORTED)
     differ = verdicts.count(ClaimVerdict.INCONSISTENT) + verdicts.count(ClaimVerdict.REFUTED)
     if len(verdicts) == 1:
@@ -198,11 +216,31 @@ class _AtPrint:
     may: bool
 
     def __str__(self) -> str:
-        explained = ", whose rounding may explain it" if self.may else ""
-        return f"{self.said} at the printed digits{explained}"
+        return f"at the printed digits, {self.said}{', which rounding may explain' * self.may}"
 
 
-_Part = str | _Above | _AtPrint | _Agrees | _Unknown
+@dataclass(frozen=True)
+class _OtherAim:
+    """Printed totals that were not minimised for time alone, and the shortest times there."""
+
+    shown: tuple[str, ...]
+    called: str
+    certified: bool
+    ratios: str
+    spans: tuple[str, ...]
+
+    def __str__(self) -> str:
+        many = len(self.shown) > 1
+        what = f"{' and '.join(self.shown)} {'were' if many else 'was'} not minimised"
+        known = "" if self.certified else "known "
+        motion = "motions on the same curves" if many else "motion on the same curve"
+        takes = f"{'take' if many else 'takes'} {' and '.join(self.spans)}"
+        return (
+            f"{what} for time alone{self.called}; the shortest {known}{motion}{self.ratios} {takes}"
+        )
+
+
+_Part = _OtherAim | str | _Above | _AtPrint | _Agrees | _Unknown
 """What is said of one problem; plain words where a total differs otherwise."""
 
 
@@ -212,14 +250,10 @@ def _remarked(shown: str, remark: str) -> str:
 
 
 def _together(parts: Sequence[_Above]) -> str:
-    """Several printed totals beside their optima in one phrase."""
-    alike = len({p.least for p in parts}) == 1
-    shown = " and ".join(f"{p.shown} ({p.remark})" if p.remark else p.shown for p in parts)
-    # Distances that print alike are said once.
-    shares = " and ".join(dict.fromkeys(p.far if alike else f"{p.least}{p.far}" for p in parts))
-    bests = " and ".join(p.best for p in parts)
-    least, name = parts[0].least if alike else "", _PLURALS[parts[0].name]
-    return f"{shown} are {least}{shares} above the {name} of {bests}"
+    """Two printed totals beside their optima in one phrase."""
+    first, *others = parts
+    rest = [f"{_remarked(p.shown, p.remark)} {p.least}{p.far} above {p.best}" for p in others]
+    return f"{first}, and {' and '.join(rest)}"
 
 
 def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
@@ -227,7 +261,7 @@ def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     pair = Pair(waterfall.problem, waterfall.reading)
     solution = study.optimum(pair)
     if why := _unknown(solution):
-        free = "no limits are stated, so there is no shortest motion"
+        free = "without limits there is no shortest motion"
         return [_Unknown(why if study.limited(pair) else free)]
     claim: AnyClaim | None = own_result(study.case, bare_totals(study.case, waterfall.problem))
     if waterfall.claim is not None:
@@ -259,14 +293,10 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     share = seconds / best - 1
     minimised = other_objective(study.case, row.claim)
     if minimised is not None and share > 0:
-        motion = f"shortest {'' if certified else 'known '}motion on the same curve"
-        motion += at_ratios(solution.problem)
         # A longer objective is left to the claims.
         called = f" ({minimised})" if count_words(minimised) <= 8 else ""
-        return (
-            f"{shown} was not minimised for time alone{called}; the {motion} takes "
-            f"{span}{' (proven)' if certified else ''}"
-        )
+        ratios, proven = at_ratios(solution.problem), " (proven)" if certified else ""
+        return _OtherAim((shown,), called, certified, ratios, (span + proven,))
     remark = _kept_there(row)
     said = _remarked(shown, remark)
     joints = _joint_by_joint(row, total, seconds)
@@ -356,17 +386,17 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], total: Total, seconds: float) ->
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
-    own = "from optimising each joint separately"
+    own = "that optimising each joint separately gives"
     own += "" if all_exact(row) else " at the printed digits"
     own += "" if proven else " (best known)"
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total.interval
     if meet((low, high), (wide.lowest, wide.highest)):
-        return f"agrees with {span} {own}"
+        return f"agrees with the {span} {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
     shown = " to ".join(dict.fromkeys(map(_percent, shares)))
-    return f"is {shown} % {'above' if longer else 'below'} {span} {own}"
+    return f"is {shown} % {'above' if longer else 'below'} the {span} {own}"
 
 
 def _percent(share: float) -> str:

@@ -271,17 +271,19 @@ class Reached(Entry):
             found = f"no answer in {self.unanswered} of {self.runs} runs"
             return f"The {self.name} finds {found}."
         if isinstance(self.gap, Why):
-            end = f"ends at {self.median:.4f} s (median); {self.gap}"
-            return f"In {self.runs} runs, the {self.name} {end}."
+            end = f"ends at {self.median:.4f} s; {self.gap}"
+            return f"The median of {self.runs} runs of the {self.name} {end}."
         far = f"{apart(self.gap)} {self.beside}"
-        return f"In {self.runs} runs, the {self.name} ends {far} (median)."
+        return f"The median of {self.runs} runs of the {self.name} ends {far}."
 
     @property
     def briefly(self) -> str:
         """The same in fewer words; empty without an answer."""
         if isinstance(self.gap, Why):
             return ""
-        return f"In {self.runs} runs, its algorithm ends {apart(self.gap)} {self.beside} (median)."
+        return (
+            f"The median of {self.runs} runs of its algorithm ends {apart(self.gap)} {self.beside}."
+        )
 
 
 def apart(gap: Gap) -> str:

@@ -43,6 +43,7 @@ from ..profile_motions import (
     out_of_range,
     profiled_limits,
 )
+from ..roots import NO_PROFILE
 from ..rounding import FEW_ROUNDINGS, meet
 from ..stated import place_of_value
 from ..study import Study
@@ -203,18 +204,20 @@ def _impossible(asked: _Asked) -> Finding:
     text = own.removeprefix("-") if own.startswith("-") else f"-{own}"
     other = claim.model_copy(update={"plateau": Printed(text, claim.plateau.exact)})
     turned = _Asked(other, PrintedRow(row.study, other, row.pair))
-    said = ""
+    said: tuple[str, ...] = ()
     if turned.every():
         totals = turned.totals
         if totals.meets(_ends(row.time(claim.value))):
-            said = f" With {text} {unit} it takes {seconds(totals.plain)}, which fits."
+            took = seconds(totals.plain)
+            said = (f"With a plateau of {text} {unit}, the profile takes {took}, which fits.",)
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT,
-        "no profile",
+        NO_PROFILE,
         f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, at the "
         "printed numbers or at the ends of what their digits leave: a phase would take less than "
-        f"0 s.{said}",
+        "0 s.",
+        *said,
         printed=f"{claim.value} {row.study.time_unit}",
         computed="no profile",
     )
