@@ -247,19 +247,12 @@ def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) 
 
 
 def _widely(problem: Problem, ask: _Ask) -> Solution:
-    """The answer by rounds of the NLP where these are quick, or else from a wide search.
-
-    Where knots follow the durations one descent comes first: on random problems all starts from
-    which a motion was found ended at one total.
-    """
+    """The answer by rounds of the NLP where these are quick, or else from a wide search."""
     given = ask.initial
     if given is not None:
         return _above_floors(problem, lambda _: given, FLOORS)
     quick = problem.segments >= SPARSE and _moves_throughout(problem)
     found = _programmed(problem, ask) if quick else None
-    if as_piecewise(problem.curve) is None:
-        start = equal_start(problem)[None]
-        found = _descended(problem, start, made_up(problem, FLOORS[0]))
     if found is None or found.status is not Status.CONVERGED:
         search = partial(basins, problem, ask.starts, ask.seed)
         searched = _above_floors(problem, search, FLOORS)
