@@ -149,7 +149,7 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
 # --- improvement ----------------------------------------------------------------------------------
 
 
-def _caveats(judgement: Judgement) -> set[CaveatKind]:
+def _caveats(judgement: Judgement) -> set[CaveatKind | None]:
     return {caveat.kind for caveat in judgement.caveats}
 
 

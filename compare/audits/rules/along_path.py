@@ -78,12 +78,5 @@ def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Findi
 def _found(
     row: PrintedRow[Any], about: str, verdict: ClaimVerdict, kind: str, said: str, **facts: Any
 ) -> Finding:
-    return row.finding(
-        "TG305",
-        verdict=verdict,
-        basis=Basis.ENCLOSURE,
-        claim=about,
-        kind=kind,
-        sentences=(said,),
-        **facts,
-    )
+    given = {"verdict": verdict, "basis": Basis.ENCLOSURE, "claim": about}
+    return row.finding("TG305", kind, said, **given | facts)
