@@ -83,7 +83,7 @@ def judge(
         informs = not own and bool(about)
         sentences = next(
             (f.sentences if f.decides else _informing(f) for f in (*own, *about)),
-            ("no rule applies to this claim",),
+            ("no rule of the audit can decide this claim",),
         )
         scope, evidence = Scope.NO, Evidence.NONE
         confidence: Confidence | Why = UNDECIDED

@@ -175,7 +175,7 @@ def _claimed(
     doubts = () if words is None else [c for c in judgement.caveats if c.kind in points]
     short = [replace(c, why="") for c in doubts if c.kind is CaveatKind.SOME_POINTS]
     shown = [*short, *(c for c in judgement.caveats if c not in doubts)]
-    title = "The whole reason" if len(every) == 1 else f"All {len(every)} reasons"
+    title = {1: "The whole reason", 2: "Both reasons"}.get(len(every), f"All {len(every)} reasons")
     verdict = word(judgement.verdict)
     return Claimed(
         text=claim.text,

@@ -326,7 +326,7 @@ TERMS = {
     "0 means that they hold, which does not prove a global optimum.",
     "on doubtful numbers": "A verdict rests on printed numbers that others in the same paper "
     "contradict; neither side is taken.",
-    "on doubtful way-points": "A verdict rests on way-points that may be misprinted, according to "
+    "on doubtful way-points": "The way-points on which a verdict rests may be misprinted, according to "
     "a finding.",
     "by construction": "True of every curve of that kind, whatever the printed numbers, so it is "
     "no evidence for them.",

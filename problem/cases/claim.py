@@ -384,7 +384,7 @@ class StatementClaim(Claim):
     @model_validator(mode="after")
     def _reason(self) -> Self:
         if self.nature is not None and self.checks != "none":
-            raise fault(".nature", 'requires checks = "none"; leave it out, or set checks so')
+            raise fault(".nature", 'requires checks = "none"; remove it, or set checks = "none"')
         if (self.checks == "none") != bool(self.not_checkable):
             raise fault(
                 ".not_checkable",

@@ -202,9 +202,7 @@ class ClampedDeclaration:
             nearest = nearest_reading(self.knots, self.degree, self.end_orders)
             if self.knots is Knots.GIVEN:
                 whole = self.conditions + self.degree + 1
-                nearest = (
-                    f"{whole} knots in all determine it, and {len(self.knot_vector)} are given"
-                )
+                nearest = f"{whole} knots determine it, but {len(self.knot_vector)} are given"
             raise TrajgapError(
                 f"interpolant {self.name}: {word}-determined, "
                 f"{counts_in_words(self.conditions, self.control_points, 'control points')}; "

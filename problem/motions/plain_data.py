@@ -46,7 +46,7 @@ def parse_json(data: bytes, name: str) -> Any:
 def number_of(value: Any, name: str, field: str, finite: bool = True) -> float:
     """A number of plain data as float64, or a refusal that names its file and its field."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise CaseError(name, field, f"{str(value)[:40]!r} is not a number; fix it")
+        raise CaseError(name, field, f"{str(value)[:40]!r} is not a number; give one")
     try:
         found = float(value)
     except OverflowError:

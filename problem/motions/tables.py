@@ -137,7 +137,7 @@ def _bad_row(text: str, name: str, separator: str | None, skip: bool, columns: i
                 return CaseError(
                     name,
                     f"line {number}, column {k}",
-                    f"{shown!r} is not a number{comma or '; fix it'}",
+                    f"{shown!r} is not a number{comma or '; give one'}",
                 )
     return CaseError(name, "", "is not a table of numbers; give one row per sample")
 
