@@ -326,8 +326,8 @@ TERMS = {
     "0 means that they hold, which does not prove a global optimum.",
     "on doubtful numbers": "A verdict rests on printed numbers that others in the same paper "
     "contradict; neither side is taken.",
-    "on doubtful way-points": "The way-points on which a verdict rests may be misprinted, according to "
-    "a finding.",
+    "on doubtful way-points": "According to a finding, the way-points on which a verdict rests may be "
+    "misprinted.",
     "by construction": "True of every curve of that kind, whatever the printed numbers, so it is "
     "no evidence for them.",
     "starts at best": "How many starts of the local solver ended at the lowest total found.",

@@ -252,8 +252,8 @@ def bounds_note(problem: Problem) -> tuple[str, ...]:
     sides = zip(box.lower, box.upper, strict=True)
     said = ", ".join(dict.fromkeys(f"{low:g} to {high:g} s" for low, high in sides))
     return (
-        f"Some durations have no upper bound. Each is searched within {said}; equal durations reach a "
-        "total of that size, so no shorter motion has a longer duration.",
+        f"Some durations have no upper bound. Each is searched within {said}; equal durations "
+        "reach a total of that size, so no shorter motion has a longer duration.",
     )
 
 

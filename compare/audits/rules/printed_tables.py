@@ -134,7 +134,8 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
         optimal = None if apart else _at_optimum(study, rows[0])
         besides = "; elsewhere the two results differ" if apart else ""
         explained = (
-            f"Their totals are the optimum within rounding (reading {optimal}), which explains the agreement: "
+            f"Their totals are the optimum within rounding (reading {optimal}), which explains the "
+            f"agreement: "
             "two algorithms that both find the optimum print the same numbers."
         )
         yield finding(
