@@ -326,7 +326,7 @@ TERMS = {
     "0 means that they hold, which does not prove a global optimum.",
     "on doubtful numbers": "A verdict rests on printed numbers that others in the same paper "
     "contradict; neither side is taken.",
-    "on doubtful way-points": "According to a finding, the way-points on which a verdict rests may be "
+    "on doubtful way-points": "According to a finding, the way-points of a verdict may be "
     "misprinted.",
     "by construction": "True of every curve of that kind, whatever the printed numbers, so it is "
     "no evidence for them.",
