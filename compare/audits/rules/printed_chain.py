@@ -21,8 +21,8 @@ _NEGLIGIBLE = 1e-9
 _COARSE = 0.1
 """Share of what rounding explains to which a distance is bounded where signs are searched."""
 
-_CLEAR = 2.0
-"""Multiple of what rounding explains from which on a miss needs no clearer one."""
+_CUT_OFF = 2.0
+"""Multiple of what rounding explains up to which digits that were cut off explain a miss."""
 
 Joints = dict[str, tuple[Measured, ...]]
 """Angles of the printed joints at every way-point."""
@@ -50,7 +50,7 @@ class _Match:
 
     @property
     def misses(self) -> bool:
-        """Whether some position is missed by more than rounding, whatever the signs."""
+        """Whether some position is missed, rounded or cut off, whatever the signs."""
         return all(_misses(near, self.slack) for near in (self.near, *self.signed))
 
     @property
@@ -65,8 +65,8 @@ class _Match:
         "Do printed joint angles and printed positions fit the printed table of the robot? "
         "Positions are computed from the angles; joints that are not printed may have any angle.",
         "Supported if they fit within rounding; inconsistent, with a warning, if no angles "
-        "reach a position. If extracted text may have lost signs of the table, every sign is "
-        "tried.",
+        "reach a position, rounded or cut off. If extracted text may have lost signs of the "
+        "table, every sign is tried.",
         "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed "
         "position.",
     ),
@@ -213,7 +213,7 @@ def _match(
         for found, chain in zip(near, variants, strict=True):
             found.append(proximity(chain, point, held))
         away = min(proximity(chain, point, held, radial=True).lower for chain in variants)
-        radial = max(radial, away if away > allowed else 0.0)
+        radial = max(radial, away if away > _CUT_OFF * allowed else 0.0)
     first, *others = (tuple(found) for found in near)
     match = _Match(convention, first, tuple(slack), tuple(others), radial)
     if not (others and match.misses):
@@ -233,7 +233,6 @@ def _unsigned(
     Each sign may be lost by itself, so one position that no signs lead to is enough: those
     that are missed most as printed are tried first.
     """
-    clearest: tuple[int, float] | None = None
     for at in sorted(range(len(places)), key=lambda at: -near[at].lower):
         k, place = places[at]
         assert k is not None
@@ -245,11 +244,9 @@ def _unsigned(
             for xyz in _signs(point)
             for angles in _signs(held)
         )
-        if least > slack[at] and (clearest is None or least > clearest[1]):
-            clearest = at, least
-        if least > _CLEAR * slack[at]:
-            break
-    return clearest
+        if least > _CUT_OFF * slack[at]:
+            return at, least
+    return None
 
 
 def _signs(values: Array) -> list[Array]:
@@ -274,7 +271,7 @@ def _fits(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
 
 
 def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
-    return any(n.lower > s for n, s in zip(near, slack, strict=True))
+    return any(n.lower > _CUT_OFF * s for n, s in zip(near, slack, strict=True))
 
 
 _OPEN = {
@@ -282,8 +279,8 @@ _OPEN = {
     "may have lost, no printed position is shown to be out of reach.",
     "other twists": "With other signs of the twists, which the text may have lost, the end meets "
     "every printed position.",
-    "undecided": "It is not decided whether rounding explains the distances to the printed "
-    "positions.",
+    "undecided": "It is not decided whether rounding, or digits cut off, explain the distances to "
+    "the printed positions.",
 }
 """Why nothing is decided, by the kind of the finding."""
 
