@@ -213,7 +213,7 @@ def _match(
         for found, chain in zip(near, variants, strict=True):
             found.append(proximity(chain, point, held))
         away = min(proximity(chain, point, held, radial=True).lower for chain in variants)
-        radial = max(radial, away if away > _CUT_OFF * allowed else 0.0)
+        radial = max(radial, away if away > allowed else 0.0)
     first, *others = (tuple(found) for found in near)
     match = _Match(convention, first, tuple(slack), tuple(others), radial)
     if not (others and match.misses):
