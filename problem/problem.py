@@ -121,6 +121,11 @@ class Problem:
             )
         q.setflags(write=False)
         object.__setattr__(self, "waypoints", q)
+        if not isinstance(self.limits, Limits):
+            raise TrajgapError(
+                f"limits: {type(self.limits).__name__} is not Limits; write Limits(velocity=...), "
+                "or two_sided of JointLimits"
+            )
         if self.limits.joints != q.shape[1]:
             if self.limits.joints != 1:
                 raise TrajgapError(

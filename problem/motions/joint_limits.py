@@ -165,6 +165,8 @@ def check_range(low: float, high: float, quantity: str, joint: str) -> None:
     name = f"{quantity} of joint {joint}"
     if np.isnan(low) or np.isnan(high):
         raise TrajgapError(f"{name}: is NaN; leave it out if there is no limit")
+    if quantity != "position" and low == -high > 0:
+        raise TrajgapError(f"{name}: is negative; give a size")
     if low > high:
         raise TrajgapError(f"{name}: the lower limit {low:g} lies above the upper one {high:g}")
     if quantity != "position" and not low <= 0.0 <= high:

@@ -206,6 +206,11 @@ def blurred(peaks: Sequence[MotionPeak], tolerance: float) -> list[str]:
 
 def check_same_joints(joints: Sequence[str], limits: JointLimits) -> None:
     """Refuse limits of other joints than those of the motion, or in another order."""
+    if not isinstance(limits, JointLimits):
+        raise TrajgapError(
+            f"limits: {type(limits).__name__} is not JointLimits; write JointLimits.of(limits, "
+            "joints) for Limits"
+        )
     if tuple(joints) != tuple(limits.joints):
         raise TrajgapError(
             f"limits: given for joints {', '.join(limits.joints)}, the motion has "

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.interpolate import PPoly
 from support.two_joints import WAYPOINTS, two_joints
 from trajgap.nlp import problem_seal
 from trajgap.problem import (
@@ -24,6 +25,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
+from trajgap.problem.motions import JointLimits, as_motion, check_motion
 
 problem_with = partial(two_joints, limits=Limits([5.0, 3.0], [8.0, 11.0]))
 
@@ -241,3 +243,17 @@ def test_the_seal_of_a_question_holds_its_ratios() -> None:
     assert problem_seal(posed([5, 5])) == problem_seal(posed("equal"))
     ends = [cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, last)),)) for last in (0.4, 0.5)]
     assert len({problem_seal(problem_with(curve=one)) for one in ends}) == 2
+
+
+def test_limits_of_another_class_are_named() -> None:
+    curve = cubic_spline(1)
+    stated = JointLimits.from_values(("a",), velocity=1.0)
+    motion = as_motion(PPoly(np.zeros((2, 1, 1)), [0.0, 1.0]), ("a",))
+    with pytest.raises(TrajgapError, match=r"limits: float is not Limits; write Limits\(velocity"):
+        Problem([[0.0], [1.0]], 1.0, curve)  # type: ignore[arg-type]
+    with pytest.raises(TrajgapError, match="limits: JointLimits is not Limits"):
+        Problem([[0.0], [1.0]], stated, curve)  # type: ignore[arg-type]
+    with pytest.raises(TrajgapError, match="limits: Limits is not JointLimits; write"):
+        check_motion(motion, Limits(1.0))  # type: ignore[arg-type]
+    with pytest.raises(TrajgapError, match="velocity of joint a: is negative"):
+        JointLimits.from_values(("a",), velocity=-1.0)

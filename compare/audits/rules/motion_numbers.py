@@ -59,6 +59,7 @@ class MotionMeasure:
             " of the norm over the joints": self.norm,
             " of the largest joint": float(self.joints.max()),
             " averaged over the joints": float(self.joints.mean()),
+            " summed over the joints": float(self.joints.sum()),
         }
 
 
@@ -345,7 +346,8 @@ def judge_peaks(study: Study) -> Iterator[Finding]:
         "Does a printed mean, root mean square or integral of velocity, acceleration or jerk "
         "belong to the motion that it describes?",
         "Supported if it agrees within rounding, with digits cut off, or with 50 samples or more; "
-        "one number for all joints may be of their norm, of the largest joint, or their mean. "
+        "one number for all joints may be of their norm, of the largest joint, or their mean or "
+        "sum. "
         "Inconsistent if none of these explains it.",
         "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
     )

@@ -15,6 +15,9 @@ from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
 from .rule_group import Explained, finding, rule_group
 
+_CUT_OFF = 2.0
+"""Multiple of what rounding explains up to which digits that were cut off explain a miss."""
+
 Joints = dict[str, tuple[Measured, ...]]
 """Angles of the printed joints at every way-point."""
 
@@ -41,7 +44,7 @@ class _Match:
 
     @property
     def misses(self) -> bool:
-        """Whether some position is missed by more than rounding, whatever the signs."""
+        """Whether some position is missed, rounded or cut off, whatever the signs."""
         return all(_misses(near, self.slack) for near in (self.near, *self.signed))
 
     @property
@@ -56,8 +59,8 @@ class _Match:
         "Do printed joint angles and printed positions fit the printed table of the robot? "
         "Positions are computed from the angles; joints that are not printed may have any angle.",
         "Supported if they fit within rounding; inconsistent, with a warning, if no angles "
-        "reach a position. If extracted text may have lost signs of the table, every sign is "
-        "tried.",
+        "reach a position, rounded or cut off. If extracted text may have lost signs of the "
+        "table, every sign is tried.",
         "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed "
         "position.",
     )
@@ -219,7 +222,6 @@ def _unsigned(
     Each sign may be lost by itself, so one position that no signs lead to is enough: those
     that are missed most as printed are tried first.
     """
-    clearest: tuple[int, float] | None = None
     for at in sorted(range(len(places)), key=lambda at: -near[at].lower):
         k, place = places[at]
         assert k is not None
@@ -231,12 +233,9 @@ def _unsigned(
             for xyz in _signs(point)
             for angles in _signs(held)
         )
-        if least > slack[at] and (clearest is None or least > clearest[1]):
-            clearest = at, least
-        # A miss by twice what rounding explains needs no clearer one.
-        if least > 2.0 * slack[at]:
-            break
-    return clearest
+        if least > _CUT_OFF * slack[at]:
+            return at, least
+    return None
 
 
 def _signs(values: Array) -> list[Array]:
@@ -261,7 +260,7 @@ def _fits(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
 
 
 def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
-    return any(n.lower > s for n, s in zip(near, slack, strict=True))
+    return any(n.lower > _CUT_OFF * s for n, s in zip(near, slack, strict=True))
 
 
 _OPEN = {
@@ -269,8 +268,8 @@ _OPEN = {
     "may have lost, no printed position is shown to be out of reach.",
     "other twists": "With other signs of the twists, which the text may have lost, the end meets "
     "every printed position.",
-    "undecided": "It is not decided whether rounding explains the distances to the printed "
-    "positions.",
+    "undecided": "It is not decided whether rounding, or digits cut off, explain the distances to "
+    "the printed positions.",
 }
 """Why nothing is decided, by the kind of the finding."""
 

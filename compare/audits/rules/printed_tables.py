@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from ....problem import Case, Interval
+from ....problem import Case, Interval, Printed
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -21,7 +21,7 @@ from ..roots import TABLES
 from ..rounding import hull, meet
 from ..stated import RowClaim, printed_total
 from ..study import Study
-from .printed_digits import end_blends
+from .printed_digits import end_blends, raised
 from .rule_group import Explained, finding, rule_group
 
 _Timed = RowClaim | TotalTimeClaim
@@ -264,12 +264,28 @@ def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
     return f"{study.total_digits(claim)}{summed}", allowed
 
 
+def _agrees(study: Study, value: Printed, other: AnyClaim) -> bool:
+    """Whether a total is that of another claim: rounded or cut off, or the coarser rounded up."""
+    allowed, printed = total_allowed(study, other), printed_total(other)
+    parts = study.case.printed_durations(other) if printed is None else (printed,)
+    up = Interval(
+        sum((raised(p).lower for p in parts), Fraction(0)),
+        sum((raised(p).upper for p in parts), Fraction(0)),
+    )
+    unit = max(p.unit for p in parts)
+    return (
+        meet(hull(value), allowed)
+        or (value.unit > unit and meet(raised(value), allowed))
+        or (value.unit < unit and meet(hull(value), up))
+    )
+
+
 def _same_total(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not isinstance(claim, TotalTimeClaim):
             continue
         found, weight = printed_alike(study, claim)
-        agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
+        agreeing = [c for c in found if _agrees(study, claim.value, c)]
         # A total may count end blends by half, and how long they take is not always printed.
         others = agreeing or [c for c in found if end_blends(study, c) is not None]
         if not others:

@@ -144,6 +144,26 @@ def test_a_total_of_digits_cut_off_agrees_with_the_total_of_the_whole_numbers(
 
 
 @pytest.mark.parametrize(
+    ("table", "value", "agrees"),
+    [
+        ("3.521", "3.53", True),
+        ("3.521", "3.54", False),
+        ("3.521", "3.6", True),
+        ("3.6", "3.521", True),
+        ("3.6", "3.498", False),
+        ("3.521", "3.523", False),  # of as many digits: neither is the other one rounded up
+    ],
+)
+def test_a_total_of_fewer_digits_elsewhere_may_be_rounded_up(
+    table: str, value: str, agrees: bool
+) -> None:
+    text = paper([[0, 1]], row("d", table), total("head", value, of="d"), velocity=1.9)
+    found = finding(text, "head", "TG105")
+    assert (found.verdict is ClaimVerdict.SUPPORTED) == agrees
+    assert (found.severity is Severity.ERROR) != agrees
+
+
+@pytest.mark.parametrize(
     ("value", "limit", "wrong"),
     [
         ("3.665", "3.6", True),

@@ -85,6 +85,17 @@ def higher(points: Points, place: int, at: int, by: float) -> Points:
     return moved
 
 
+def test_positions_cut_off_accuse_nobody() -> None:
+    rows = [[str(int(float(x))) for x in point] for point in PLACES]
+    far = max(
+        np.linalg.norm(np.subtract(np.array(p, float), np.array(r, float)))
+        for p, r in zip(PLACES, rows, strict=True)
+    )
+    assert far > 1.2  # mm: rounding to a millimetre and the angles' digits explain 1.1
+    assert one(rows, EXACT, column()).verdict is ClaimVerdict.NOT_CHECKABLE
+    assert one(higher(rows, 1, 0, 3), EXACT, column()).verdict is ClaimVerdict.INCONSISTENT
+
+
 HANGING = positions(THIRD, up=-1.0)
 """The arm hangs down: the twist's sign is the other one."""
 LOST = [[*HANGING[0][:2], HANGING[0][2].lstrip("-")], *HANGING[1:]]

@@ -155,13 +155,14 @@ def test_measures_are_those_of_adaptive_quadrature(curve: Curve) -> None:
         assert found.joints[1] == pytest.approx(own, rel=1e-6)
 
 
-def test_one_number_of_several_joints_may_be_their_norm_largest_or_mean() -> None:
+def test_one_number_of_several_joints_may_be_their_norm_largest_mean_or_sum() -> None:
     motion = fit(cubic_spline(1), np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([2.0]))
     found = measured(motion, 1, "mean")
     assert found.meant(None) == {
         " of the norm over the joints": pytest.approx(2.5),
         " of the largest joint": pytest.approx(2.0),
         " averaged over the joints": pytest.approx(1.75),
+        " summed over the joints": pytest.approx(3.5),
     }
 
 
