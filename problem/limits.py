@@ -14,6 +14,8 @@ from .errors import TrajgapError
 
 QUANTITIES = ("velocity", "acceleration", "jerk")
 """The limited derivatives of the joint angle, in order of differentiation."""
+ORDERS = ("position", *QUANTITIES)
+"""Words for derivatives 0 to 3."""
 
 
 class _Size:
