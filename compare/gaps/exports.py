@@ -9,8 +9,8 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
 from itertools import groupby, islice
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -172,30 +172,24 @@ def _write_parquet(rows: Iterable[Row], path: Path) -> int:
 # --- IOHprofiler ----------------------------------------------------------------------------------
 
 
-@dataclass
-class _Numbered:
-    """Names in the order in which they come, numbered from 1."""
-
-    known: dict[Any, int] = field(default_factory=dict)
-
-    def __call__(self, name: Any) -> int:
-        return self.known.setdefault(name, len(self.known) + 1)
-
-
 def _write_ioh(rows: Iterable[Row], folder: Path) -> int:
     """One folder for each algorithm, and in it one description and one table for each problem.
 
     An algorithm is an optimiser with its settings and handling, a function is a problem under a
     reading. The values are the totals of the objective, s.
     """
-    algorithms, functions = _Numbered(), _Numbered()
+    # Numbered from 1 in the order in which they come.
+    algorithms: dict[Any, int] = {}
+    functions: dict[Any, int] = {}
     count = 0
     useful = (row for row in rows if row.evaluations)
-    for (ours, theirs), runs in groupby(useful, lambda row: (_algorithm(row), _function(row))):
+    ours_of = attrgetter("optimizer", "settings", "handling", "origin")
+    theirs_of = attrgetter("problem", "reading", "segments")
+    for (ours, theirs), runs in groupby(useful, lambda row: (ours_of(row), theirs_of(row))):
         optimizer, settings, handling, origin = ours
         words = re.sub(r"[^A-Za-z0-9.-]+", "-", f"{optimizer}-{handling}")
-        home = folder / f"{algorithms(ours)}-{words}"
-        number = functions(theirs)
+        home = folder / f"{algorithms.setdefault(ours, len(algorithms) + 1)}-{words}"
+        number = functions.setdefault(theirs, len(functions) + 1)
         table = f"data_f{number}/IOHprofiler_f{number}_DIM{theirs[2]}.dat"
         (home / table).parent.mkdir(parents=True, exist_ok=True)
         described = list(_write_runs(runs, home / table))
@@ -216,14 +210,6 @@ def _write_ioh(rows: Iterable[Row], folder: Path) -> int:
         text = json.dumps(document, indent=1, allow_nan=False) + "\n"
         (home / f"IOHprofiler_f{number}.json").write_text(text, encoding="utf-8", newline="")
     return count
-
-
-def _algorithm(row: Row) -> tuple[str, str, str, str]:
-    return row.optimizer, row.settings, row.handling, row.origin
-
-
-def _function(row: Row) -> tuple[str, str, int]:
-    return row.problem, row.reading, row.segments
 
 
 def _write_runs(rows: Iterable[Row], path: Path) -> Iterator[dict[str, Any]]:
