@@ -9,6 +9,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import fields
 from itertools import groupby, islice
 from operator import attrgetter
 from pathlib import Path
@@ -17,36 +18,26 @@ from typing import Any, TextIO
 from ...problem import CaseError, new_draft
 from .rows import Row, canonical
 
+_KINDS: dict[Any, str] = {
+    "str": "text",
+    "str | None": "text",
+    "RowStatus": "text",
+    "int": "count",
+    "tuple[int, ...]": "counts",
+    "float | None": "number",
+    "tuple[float, ...] | None": "numbers",
+}
+"""What a column holds, by the type of a row's field."""
+_SPLIT = {
+    "reported_gap": {"reported_gap_lowest": "number", "reported_gap_highest": "number"},
+    "feasible_gap": {"feasible_gap_lowest": "number", "feasible_gap_highest": "number"},
+    "trace": {"trace_evaluations": "counts", "trace_totals": "numbers"},
+}
+"""Fields of a row that become two columns."""
 COLUMNS: dict[str, str] = {
-    "key": "text",
-    "problem": "text",
-    "reading": "text",
-    "problem_sha256": "text",
-    "optimizer": "text",
-    "settings": "text",
-    "origin": "text",
-    "handling": "text",
-    "seed": "count",
-    "stream": "counts",
-    "budget": "count",
-    "segments": "count",
-    "status": "text",
-    "message": "text",
-    "evaluations": "count",
-    "durations": "numbers",
-    "reported_time": "number",
-    "verdict": "text",
-    "worst_ratio": "number",
-    "feasible_time": "number",
-    "feasible_why": "text",
-    "reference_upper": "number",
-    "reference_lower": "number",
-    "reported_gap_lowest": "number",
-    "reported_gap_highest": "number",
-    "feasible_gap_lowest": "number",
-    "feasible_gap_highest": "number",
-    "trace_evaluations": "counts",
-    "trace_totals": "numbers",
+    name: kind
+    for one in fields(Row)
+    for name, kind in (_SPLIT.get(one.name) or {one.name: _KINDS[one.type]}).items()
 }
 """Columns of a table of rows, and what each holds; the meaning is that of `Row`."""
 _BATCH = 1_000
