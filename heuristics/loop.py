@@ -284,14 +284,15 @@ def _each(
 ) -> tuple[R, ...]:
     clean = [checked(SEED, "seed", seed) for seed in seeds]
     workers = min(checked(COUNT, "workers", workers), max(1, len(clean)))
-    apart = len(problem.joints) if some is _joint_runs else 1
-    most = max(1, TOGETHER // apart) if moves_together(method) else 1
+    by_joint = some is _joint_runs
+    most = max(1, TOGETHER // (len(problem.joints) if by_joint else 1))
+    most = most if moves_together(method) else 1
     # Four pieces for each process, so none waits long for the last one.
     size = most if workers == 1 else max(1, min(most, len(clean) // (4 * workers)))
     parts = [tuple(clean[i : i + size]) for i in range(0, len(clean), size)]
     collected: list[R] = []
     if workers > 1:
-        compile_judge(problem.joint(0) if some is _joint_runs else problem, objective)
+        compile_judge(problem.joint(0) if by_joint else problem, objective)
     # Threads would be slower than one: half of each iteration holds the interpreter.
     with closing(in_processes(partial(some, method, problem, objective), parts, workers)) as found:
         for result in chain.from_iterable(found):

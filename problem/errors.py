@@ -6,9 +6,6 @@ from collections.abc import Sequence
 
 from .characters import visible
 
-_MOST_FAULTS = 8
-"""Faults that one refusal names: more hide the ones to begin with."""
-
 
 class TrajgapError(ValueError):
     """Root of every exception that trajgap raises on purpose."""
@@ -108,7 +105,8 @@ class CaseError(TrajgapError):
         return ((self.field, self.reason), *self.others)
 
     def __str__(self) -> str:
-        shown = [": ".join(part for part in one if part) for one in self.faults[:_MOST_FAULTS]]
+        # More than eight would hide the ones to begin with.
+        shown = [": ".join(part for part in one if part) for one in self.faults[:8]]
         more = len(self.faults) - len(shown)
         said = "; also ".join(shown) + (f" (and {more} more)" if more else "")
         line = " ".join(": ".join(part for part in (self.file, said) if part).split())

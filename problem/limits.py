@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import overload
@@ -14,6 +15,8 @@ from .errors import TrajgapError
 
 QUANTITIES = ("velocity", "acceleration", "jerk")
 """The limited derivatives of the joint angle, in order of differentiation."""
+ORDERS = ("position", *QUANTITIES)
+"""Words for derivatives 0 to 3."""
 
 
 class _Size:
@@ -190,10 +193,7 @@ class Limits:
 
     def joint(self, index: int) -> Limits:
         """Limits of one joint alone."""
-        one = slice(index, index + 1)
-        velocity, acceleration, jerk = (self.__dict__[name][one] for name in QUANTITIES)
-        low, high = self.position_lower[one], self.position_upper[one]
-        return Limits(velocity, acceleration, jerk, low, high)
+        return self._remade(lambda values: values[index : index + 1])
 
     def with_derivatives(self, values: ArrayLike) -> Limits:
         """Copy with the derivative limits replaced by ``values``, shape (joints, 3)."""
@@ -214,11 +214,12 @@ class Limits:
 
     def of_joints(self, count: int) -> Limits:
         """The limits of the one joint that these are given for, for each of ``count`` joints."""
-        velocity, acceleration, jerk = (
-            np.repeat(self.__dict__[name], count, axis=0) for name in QUANTITIES
-        )
-        low, high = self.position_lower[0], self.position_upper[0]
-        return Limits(velocity, acceleration, jerk, low, high, count)
+        return self._remade(lambda values: np.repeat(values, count, axis=0))
+
+    def _remade(self, change: Callable[[Array], Array]) -> Limits:
+        names = (*QUANTITIES, "position_lower", "position_upper")
+        velocity, acceleration, jerk, low, high = (change(self.__dict__[name]) for name in names)
+        return Limits(velocity, acceleration, jerk, low, high)
 
 
 def _paired(name: str, pairs: Array) -> Array:

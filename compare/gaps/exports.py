@@ -9,44 +9,35 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import fields
 from itertools import groupby, islice
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, TextIO
 
 from ...problem import CaseError, new_draft
 from .rows import Row, canonical
 
+_KINDS: dict[Any, str] = {
+    "str": "text",
+    "str | None": "text",
+    "RowStatus": "text",
+    "int": "count",
+    "tuple[int, ...]": "counts",
+    "float | None": "number",
+    "tuple[float, ...] | None": "numbers",
+}
+"""What a column holds, by the type of a row's field."""
+_SPLIT = {
+    "reported_gap": {"reported_gap_lowest": "number", "reported_gap_highest": "number"},
+    "feasible_gap": {"feasible_gap_lowest": "number", "feasible_gap_highest": "number"},
+    "trace": {"trace_evaluations": "counts", "trace_totals": "numbers"},
+}
+"""Fields of a row that become two columns."""
 COLUMNS: dict[str, str] = {
-    "key": "text",
-    "problem": "text",
-    "reading": "text",
-    "problem_sha256": "text",
-    "optimizer": "text",
-    "settings": "text",
-    "origin": "text",
-    "handling": "text",
-    "seed": "count",
-    "stream": "counts",
-    "budget": "count",
-    "segments": "count",
-    "status": "text",
-    "message": "text",
-    "evaluations": "count",
-    "durations": "numbers",
-    "reported_time": "number",
-    "verdict": "text",
-    "worst_ratio": "number",
-    "feasible_time": "number",
-    "feasible_why": "text",
-    "reference_upper": "number",
-    "reference_lower": "number",
-    "reported_gap_lowest": "number",
-    "reported_gap_highest": "number",
-    "feasible_gap_lowest": "number",
-    "feasible_gap_highest": "number",
-    "trace_evaluations": "counts",
-    "trace_totals": "numbers",
+    name: kind
+    for one in fields(Row)
+    for name, kind in (_SPLIT.get(one.name) or {one.name: _KINDS[one.type]}).items()
 }
 """Columns of a table of rows, and what each holds; the meaning is that of `Row`."""
 _BATCH = 1_000
@@ -172,30 +163,24 @@ def _write_parquet(rows: Iterable[Row], path: Path) -> int:
 # --- IOHprofiler ----------------------------------------------------------------------------------
 
 
-@dataclass
-class _Numbered:
-    """Names in the order in which they come, numbered from 1."""
-
-    known: dict[Any, int] = field(default_factory=dict)
-
-    def __call__(self, name: Any) -> int:
-        return self.known.setdefault(name, len(self.known) + 1)
-
-
 def _write_ioh(rows: Iterable[Row], folder: Path) -> int:
     """One folder for each algorithm, and in it one description and one table for each problem.
 
     An algorithm is an optimiser with its settings and handling, a function is a problem under a
     reading. The values are the totals of the objective, s.
     """
-    algorithms, functions = _Numbered(), _Numbered()
+    # Numbered from 1 in the order in which they come.
+    algorithms: dict[Any, int] = {}
+    functions: dict[Any, int] = {}
     count = 0
     useful = (row for row in rows if row.evaluations)
-    for (ours, theirs), runs in groupby(useful, lambda row: (_algorithm(row), _function(row))):
+    ours_of = attrgetter("optimizer", "settings", "handling", "origin")
+    theirs_of = attrgetter("problem", "reading", "segments")
+    for (ours, theirs), runs in groupby(useful, lambda row: (ours_of(row), theirs_of(row))):
         optimizer, settings, handling, origin = ours
         words = re.sub(r"[^A-Za-z0-9.-]+", "-", f"{optimizer}-{handling}")
-        home = folder / f"{algorithms(ours)}-{words}"
-        number = functions(theirs)
+        home = folder / f"{algorithms.setdefault(ours, len(algorithms) + 1)}-{words}"
+        number = functions.setdefault(theirs, len(functions) + 1)
         table = f"data_f{number}/IOHprofiler_f{number}_DIM{theirs[2]}.dat"
         (home / table).parent.mkdir(parents=True, exist_ok=True)
         described = list(_write_runs(runs, home / table))
@@ -216,14 +201,6 @@ def _write_ioh(rows: Iterable[Row], folder: Path) -> int:
         text = json.dumps(document, indent=1, allow_nan=False) + "\n"
         (home / f"IOHprofiler_f{number}.json").write_text(text, encoding="utf-8", newline="")
     return count
-
-
-def _algorithm(row: Row) -> tuple[str, str, str, str]:
-    return row.optimizer, row.settings, row.handling, row.origin
-
-
-def _function(row: Row) -> tuple[str, str, int]:
-    return row.problem, row.reading, row.segments
 
 
 def _write_runs(rows: Iterable[Row], path: Path) -> Iterator[dict[str, Any]]:

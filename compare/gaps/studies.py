@@ -246,21 +246,14 @@ def _entries(
         else:
             known = block.case in published_ids()
             cases = [load_case(block.case if known else str(folder / block.case))]
+        posed = [
+            (case, *pair, case.problem(*pair, block.coupling))
+            for case in cases
+            for pair in _pairs(case, block)
+        ]
     except TrajgapError as error:
         raise CaseError(file, f"{field}.case", str(error)) from None
-    for case in cases:
-        yield from _of_case(case, block, handlings, file, field)
-
-
-def _of_case(
-    case: Case, block: ProblemsBlock, handlings: tuple[Handling, ...], file: str, field: str
-) -> Iterator[StudyProblem]:
-    try:
-        pairs = _pairs(case, block)
-        problems = [case.problem(*pair, block.coupling) for pair in pairs]
-    except CaseError as error:
-        raise CaseError(file, f"{field}.case", str(error)) from None
-    for (pid, rid), problem in zip(pairs, problems, strict=True):
+    for case, pid, rid, problem in posed:
         apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
         for joint in range(len(problem.joints)) if apart else (None,):
             one = problem if joint is None else problem.joint(joint)

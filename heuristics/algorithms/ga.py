@@ -19,15 +19,12 @@ from .genes import (
     Genetics,
     Mutation,
     MutationUnit,
-    Rate,
-    elite_kept,
     fitness_values,
     members_of,
     roulette,
     shuffled,
 )
-from .population import Population, first_population, followed
-from .swarm import spread
+from .population import Population
 
 ELITE_OPEN = (
     "elite: whether the best individual survives is not printed; it does not, but is reported"
@@ -138,21 +135,14 @@ class GA(Genetics):
         winners: NDArray[np.intp] = np.where(fitter, second, first)
         return winners
 
-    def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
-        """Draw and judge the initial population."""
-        drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
-        return first_population(self.on_lattice(drawn), objective)
-
     def step(
         self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
     ) -> Population:
         """Make the next generation and judge it."""
         fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
         pool = shuffled(members_of(before.positions, self.parents(fitness, rng)), rng)
-        return bred(
-            before, pool, self, self.crossover_rate, self.mutation_rate, self.elite,
-            rng, objective,
-        )  # fmt: skip
+        rates = (self.crossover_rate, self.mutation_rate)
+        return self.bred(before, pool, rates, self.elite, rng, objective)
 
 
 def check_population(kind: str, population: int, elite: int, multiple: int) -> None:
@@ -167,21 +157,3 @@ def check_range(kind: str, span: tuple[float, float]) -> None:
     """Refuse a range without width: nothing could be encoded or mutated."""
     if not span[0] < span[1]:
         raise reject(kind, "position_range", "has no width; give two different numbers")
-
-
-def bred(
-    before: Population,
-    pool: Array,
-    genetics: Genetics,
-    crossover_rate: Rate,
-    mutation_rate: Rate,
-    elite: int,
-    rng: np.random.Generator,
-    objective: Objective,
-) -> Population:
-    """Next generation from a shuffled mating pool, judged."""
-    children = genetics.offspring(pool, crossover_rate, mutation_rate, rng)
-    positions, totals = elite_kept(
-        before.positions, before.fitness, children, objective(children), elite
-    )
-    return followed(before, positions, totals)

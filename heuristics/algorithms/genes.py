@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, TrajgapError
-from .swarm import held
+from ..objective import Bounds, Objective
+from .population import Population, first_population, followed
+from .swarm import held, spread
 
 Rate = float | Array
 """A chance; of populations side by side that differ in it, of shape (populations, 1, 1)."""
@@ -91,6 +93,7 @@ def fitness_values(totals: Array, penalty: float, rule: FitnessRule) -> Array:
 class Genetics:
     """Encoding and operators of algorithms with these settings."""
 
+    population: int
     encoding: Encoding
     crossover: Crossover
     mutation: Mutation
@@ -132,6 +135,27 @@ class Genetics:
         if self.encoding is Encoding.BINARY:
             return self.decoded(self.encoded(positions))
         return positions
+
+    def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
+        """Draw and judge the initial population."""
+        drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
+        return first_population(self.on_lattice(drawn), objective)
+
+    def bred(
+        self,
+        before: Population,
+        pool: Array,
+        rates: tuple[Rate, Rate],
+        elite: int,
+        rng: np.random.Generator,
+        objective: Objective,
+    ) -> Population:
+        """Next generation from a shuffled mating pool, by chances of crossover and mutation."""
+        children = self.offspring(pool, *rates, rng)
+        positions, totals = elite_kept(
+            before.positions, before.fitness, children, objective(children), elite
+        )
+        return followed(before, positions, totals)
 
     def offspring(
         self, pool: Array, crossover_rate: Rate, mutation_rate: Rate, rng: np.random.Generator

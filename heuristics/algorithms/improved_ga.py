@@ -16,7 +16,6 @@ from ..settings import Span, clean, number, positive, reject, share, switch, who
 from .ga import (
     ELITE_OPEN,
     SHARED_OPEN,
-    bred,
     check_population,
     check_range,
 )
@@ -33,8 +32,7 @@ from .genes import (
     roulette,
     shuffled,
 )
-from .population import Population, first_population
-from .swarm import spread
+from .population import Population
 
 OPEN_CHOICES = (
     "q_best, q_worst: q_y and q_s of (13), not printed; 0.2 and 0.05",
@@ -202,18 +200,13 @@ class ImprovedGA(Genetics):
         picked = np.take_along_axis(middle, ranks, axis=-1)
         return np.concatenate([best, again, picked], axis=-1)
 
-    def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
-        """Draw and judge the initial population."""
-        drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
-        return first_population(self.on_lattice(drawn), objective)
-
     def step(
         self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
     ) -> Population:
         """Make the next generation and judge it."""
         fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
-        crossing, mutating = self.rates(fitness)
+        rates = self.rates(fitness)
         chosen = self.parents(before.fitness, before.iteration + 1, rng)
         pool = shuffled(members_of(before.positions, chosen), rng)
         elite = self.population // 4 if self.best_quarter is BestQuarter.SURVIVES else 0
-        return bred(before, pool, self, crossing, mutating, elite, rng, objective)
+        return self.bred(before, pool, rates, elite, rng, objective)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -34,11 +34,10 @@ A hundred times what papers print; a population of that size still fits into mem
 """
 
 
-def _record(kind: str) -> Callable[..., Algorithm[Any]]:
+def _record(kind: str) -> Any:
     if kind not in _RECORDS:
         raise TrajgapError(f"algorithm kind: {kind!r} is unknown; {nearest(str(kind), KINDS)}")
-    record: Callable[..., Algorithm[Any]] = _RECORDS[kind]
-    return record
+    return _RECORDS[kind]
 
 
 def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
@@ -62,12 +61,12 @@ def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
     20
     """
     record = _record(kind)
-    known = [field.name for field in fields(_RECORDS[kind])]
+    known = [field.name for field in fields(record)]
     for key in settings:
         if key not in known:
             said = nearest(str(key), known)
             raise TrajgapError(f"{kind}: {key}: unknown setting; {said} known: {', '.join(known)}")
-    made = record(**settings)
+    made: Algorithm[Any] = record(**settings)
     for key in settings:
         value = getattr(made, key)
         # Clean by now: a whole number is a count, whatever else may be large is a float.
@@ -84,6 +83,5 @@ def open_choices(kind: str) -> tuple[str, ...]:
     TrajgapError
         If the kind is unknown.
     """
-    _record(kind)
-    choices: tuple[str, ...] = _RECORDS[kind].open_choices
+    choices: tuple[str, ...] = _record(kind).open_choices
     return choices

@@ -177,17 +177,6 @@ def _check_curves(document: CaseFile, faults: Faults, claim: MaximumClaim, at: s
             return
 
 
-_BOUNDED_BY: dict[str, Quantity] = {
-    "trapezoidal": "acceleration",
-    "s-curve": "jerk",
-    "sine-jerk": "jerk",
-    "fourth-order": "jerk",
-    "biagiotti-melchiorri": "jerk",
-    "jerk-impulses": "jerk",
-}
-"""The limit without which each profile is another one: its highest derivative would jump."""
-
-
 def _check_profile(
     faults: Faults, claim: ProfiledClaim, every: Sequence[Statement], at: str
 ) -> None:
@@ -202,7 +191,8 @@ def _check_profile(
             )
     if claim.profile is None:
         return
-    needed = _BOUNDED_BY[claim.profile]
+    # Without this limit the highest derivative would jump: another profile.
+    needed = "acceleration" if claim.profile == "trapezoidal" else "jerk"
     for statement in every:
         given = getattr(statement.limits, needed)
         each = given if isinstance(given, tuple) else (given,) * len(statement.labels)

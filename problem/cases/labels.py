@@ -51,29 +51,28 @@ _FAMILIES = {
     "clamped-b-spline": "clamped B-spline",
 }
 """Families of curves in words; the others are called as case files call them."""
-_KNOTS = {
-    "waypoints": "knots at the way-points",
-    "averaged": "averaged knots",
-    "averaged-continued": "averaged knots, continued at the ends",
-    "given": "printed knots",
+_KEYS = {
+    "knots": {
+        "waypoints": "knots at the way-points",
+        "averaged": "averaged knots",
+        "averaged-continued": "averaged knots, continued at the ends",
+        "given": "printed knots",
+    },
+    "parameters": {
+        "times": "knots by the times",
+        "chord": "knots by chord lengths",
+        "joint-chord": "knots by the chord lengths of each joint",
+        "given": "knots by printed parameters",
+    },
+    "time": {"stretched": "each segment stretched in time separately", "timed": "smooth time"},
+    "time_ends": {
+        "equal-vertices": "time ending in equal vertices",
+        "natural": "natural ends of time",
+    },
 }
-"""Where the inner knots of a clamped B-spline lie."""
-_PARAMETERS = {
-    "times": "knots by the times",
-    "chord": "knots by chord lengths",
-    "joint-chord": "knots by the chord lengths of each joint",
-    "given": "knots by printed parameters",
-}
-"""What its knots are placed by."""
+"""Keys of B-splines, and what their words say."""
 _SITES = {"times": "way-points at the times", "given": "way-points at printed parameters"}
-"""Where the way-points lie among printed knots."""
-_TIME = {"stretched": "each segment stretched in time separately", "timed": "smooth time"}
-"""How time enters a B-spline."""
-_TIME_ENDS = {
-    "equal-vertices": "time ending in equal vertices",
-    "natural": "natural ends of time",
-}
-"""How a smooth time ends."""
+"""What the parameters say beside printed knots: where the way-points lie among these."""
 
 
 def reading_labels(document: CaseFile, readings: Sequence[Reading]) -> dict[str, str]:
@@ -166,13 +165,11 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield f"degrees {'-'.join(map(str, block.degrees))}"
     if block.continuity is not None:
         yield f"continuous up to derivative {block.continuity}"
-    sites = _SITES if block.knots == "given" else _PARAMETERS
-    named = ((_KNOTS, block.knots), (sites, block.parameters))
-    yield from (words[key] for words, key in named if key is not None)
-    if block.time is not None:
-        yield _TIME[block.time]
-    if block.time_ends is not None:
-        yield _TIME_ENDS[block.time_ends]
+    for key, words in _KEYS.items():
+        word = getattr(block, key)
+        if word is not None:
+            sites = key == "parameters" and block.knots == "given"
+            yield (_SITES if sites else words)[word]
     apart = block.finish_orders is not None or block.finish_derivatives is not None
     if block.end_orders is not None or block.end_derivatives is not None or apart:
         yield from _end_words("start" if apart else "end", block.orders, block.end_derivatives)

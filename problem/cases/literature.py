@@ -35,29 +35,19 @@ _NEEDED: dict[str, dict[str, object]] = {
 time; a reading for each other one is the paper's to admit."""
 _ALIASES: dict[str, tuple[str, dict[str, object]]] = {
     "cubic spline": ("cubic-spline", {}),
-    "c2 cubic spline": ("cubic-spline", {}),
-    "c2 cubic natural spline": LITERATURE["natural-cubic"],
     "cubic natural spline": LITERATURE["natural-cubic"],
     "cubic natural": LITERATURE["natural-cubic"],
     "natural spline": LITERATURE["natural-cubic"],
     "clamped cubic spline": LITERATURE["clamped-cubic"],
     "clamped spline": LITERATURE["clamped-cubic"],
     "clamped cubic": LITERATURE["clamped-cubic"],
-    "cubic spline two virtual": ("cubic-spline-virtual", {}),
     "cubic spline virtual": ("cubic-spline-virtual", {}),
-    "quintic spline two virtual": ("quintic-spline-virtual", {}),
     "quintic spline virtual": ("quintic-spline-virtual", {}),
-    "c2 cubic spline two virtual": ("cubic-spline-virtual", {}),
-    "c2 cubic spline virtual": ("cubic-spline-virtual", {}),
-    "c4 quintic spline two virtual": ("quintic-spline-virtual", {}),
-    "c4 quintic spline virtual": ("quintic-spline-virtual", {}),
-    "c6 septic spline": ("septic-spline", {}),
     "septic spline": ("septic-spline", {}),
     "bspline cubic": LITERATURE["cubic-b-spline"],
     "bspline cubic uniform": ("uniform-cubic-b-spline", {}),
     "bspline clamped cubic": ("clamped-b-spline", {"degree": 3}),
     "quintic spline": ("quintic-spline", {}),
-    "c4 quintic spline": ("quintic-spline", {}),
     "bspline quintic": LITERATURE["quintic-b-spline"],
     "bspline clamped quintic": ("clamped-b-spline", {"degree": 5}),
     "bspline septic": ("clamped-b-spline", {"degree": 7}),
@@ -95,6 +85,8 @@ _SAYING_NOTHING = {
     "trajectory", "via", "way", "waypoint", "waypoints", "with",
 }  # fmt: skip
 """Words that tell no curve from another."""
+_OF_COURSE = {"cubic": "c2", "quintic": "c4", "septic": "c6", "virtual": "two"}
+"""Words, and what they imply: the continuity of a spline, the number of virtual points."""
 _PROFILES = (
     "lspb", "trapezoidal", "trapezoid", "parabolic", "blends", "scurve", "doubles", "sinejerk",
 )  # fmt: skip
@@ -172,8 +164,11 @@ def _words(name: str) -> set[str]:
     text = re.sub(r"\bb[-\s]?(?=splines?\b)", "b", name.lower())
     text = re.sub(r"\b(s[-\s]curves?|double[-\s]s)\b", "scurve", text)
     text = re.sub(r"\b(sine|sinusoidal|trigonometric)[-\s]jerk\b", "sinejerk", text)
-    found = (_WORDS.get(word, word) for word in re.findall(r"[a-z0-9]+", text))
-    return {word for word in found if word not in _SAYING_NOTHING}
+    found = {_WORDS.get(word, word) for word in re.findall(r"[a-z0-9]+", text)}
+    for word, what_goes_without_saying in _OF_COURSE.items():
+        if word in found:
+            found.discard(what_goes_without_saying)
+    return found - _SAYING_NOTHING
 
 
 def _degrees(name: str) -> tuple[int, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 from math import isfinite
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_origin
 
 from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSchema, model_validator
 
@@ -36,22 +36,6 @@ from .clue import AnyClue
 from .declaration import InterpolantBlock
 from .instances import InstancesBlock
 from .joint_units import Units
-
-LISTS = (
-    "problems",
-    "readings",
-    "algorithms",
-    "families",
-    "tables",
-    "claims",
-    "clues",
-    "assumptions",
-    "columns",
-    "cartesian",
-    "equations",
-    "not_checkable",
-)
-"""Lists of blocks with ids, in the order in which their faults are listed."""
 
 
 class Source(Strict):
@@ -406,6 +390,12 @@ class CaseFile(ProblemData):
     cartesian: tuple[Cartesian, ...] = ()
     equations: tuple[Equation, ...] = ()
     not_checkable: tuple[NotCheckable, ...] = ()
+
+
+LISTS = tuple(
+    name for name, one in CaseFile.model_fields.items() if get_origin(one.annotation) is tuple
+)
+"""Lists of blocks with ids, in the order in which their faults are listed."""
 
 
 def case_schema() -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from ..arrays import Array
 from ..curves import MOST_OPEN, Curve, Derivatives, as_piecewise, counts_in_words
 from ..duration_ratios import ratio_word
 from ..errors import CaseError, RatiosError, TrajgapError
-from ..limits import Limits
+from ..limits import QUANTITIES, Limits
 from ..printed import CHOICES, LimitPair, Measured, Printed, Quantity, is_linear, to_si
 from ..problem import Coupling, Problem
 from .declaration import InterpolantBlock, Values, declare
@@ -23,8 +24,6 @@ from .schema import Durations, LimitsBlock, Waypoints
 
 Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
-_DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
-"""What orders 1 to 3 measure; higher ones have no unit in a case file."""
 _LIMITED: dict[str, Quantity] = {
     "velocity": "velocity",
     "acceleration": "acceleration",
@@ -288,8 +287,12 @@ class Statement:
         return self._in_si(field, order, given)
 
     def _in_si(self, field: str, order: int, number: Printed, joint: int | None = None) -> float:
-        zero = number.fraction == 0 or order > len(_DERIVATIVES)
-        return 0.0 if zero else self.si(number, _DERIVATIVES[order - 1], field, joint).value
+        zero = number.fraction == 0 or order > len(QUANTITIES)
+        return (
+            0.0
+            if zero
+            else self.si(number, cast(Quantity, QUANTITIES[order - 1]), field, joint).value
+        )
 
     def problem(self, digits: Digits = Digits.PRINTED) -> Problem:
         """Problem in radians, metres and seconds.

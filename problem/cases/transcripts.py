@@ -11,24 +11,10 @@ from .case import Case
 
 ABSENT = "(absent)"
 """Stands for what one of two transcriptions does not have."""
-WORDS = frozenset(
-    (
-        "answer",
-        "choice",
-        "default_why",
-        "not_checkable",
-        "not_printed",
-        "note",
-        "open",
-        "outcome",
-        "text",
-        "title",
-        "transcription",
-        "what",
-        "where",
-        "why",
-    )
-)
+WORDS = frozenset({
+    "answer", "choice", "default_why", "not_checkable", "not_printed", "note", "open", "outcome",
+    "text", "title", "transcription", "what", "where", "why",
+})  # fmt: skip
 """Keys whose text is the transcriber's own: two of them choose other words for the same."""
 
 

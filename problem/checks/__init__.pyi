@@ -9,7 +9,7 @@ from .evaluation import (
     Evaluation as Evaluation,
     evaluate as evaluate,
     keeps_limits as keeps_limits,
+    peak_gradients as peak_gradients,
     reachable_total as reachable_total,
 )
-from .gradient import peak_gradients as peak_gradients
 from .jumps import Jump as Jump

@@ -13,17 +13,12 @@ from ..arrays import Array
 from ..curves import Enclosed, Extremum, Furthest, Trajectory, as_durations, furthest
 from ..errors import CurveError, SingularError
 from ..in_notebooks import InNotebooks
-from ..limits import QUANTITIES, half_range
+from ..limits import ORDERS, QUANTITIES, half_range
 from ..problem import Problem
 from .jumps import Jump, jumps_of
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
-
-
-_BLUR = 1e-10
-"""Relative error of a reported ratio above which a closer bound is asked for, if there is one: a
-tenth of the tolerance."""
 
 
 class Verdict(StrEnum):
@@ -64,10 +59,6 @@ class Peak:
     def margin(self) -> float:
         """1 − ratio: the remaining share of the limit."""
         return 1.0 - self.ratio
-
-
-_DERIVATIVES = ("position", *QUANTITIES)
-"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +112,7 @@ class Check(InNotebooks):
         if self.jumps:
             top = max(self.jumps, key=lambda jump: (-jump.order, abs(jump.size)))
             lines.append(
-                f"jumps           {len(self.jumps)}, the largest of {_DERIVATIVES[top.order]} by "
+                f"jumps           {len(self.jumps)}, the largest of {ORDERS[top.order]} by "
                 f"{top.size:.6g} at t = {top.time:.6f} s (joint {top.joint}); "
                 f"limits, apart from jumps: {self.limits}"
             )
@@ -311,7 +302,8 @@ def check(
     except CurveError as why:
         return _no_curve(problem, h, why, tolerance)
     judged, hidden = _judged(problem, h, found, tolerance)
-    loose = any(_slack(problem, p) > _BLUR * max(1.0, p.ratio) for p in judged.peaks)
+    # A closer bound is asked for where the ratio may be off by a tenth of the tolerance.
+    loose = any(_slack(problem, p) > TOLERANCE / 10 * max(1.0, p.ratio) for p in judged.peaks)
     if found.closer is not None and (hidden or loose or judged.verdict is Verdict.UNDECIDED):
         with suppress(SingularError):  # the first bound holds all the same
             judged, _ = _judged(problem, h, found.closer(), tolerance)

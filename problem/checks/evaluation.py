@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
-from ..curves import Asked, as_durations
+from ..curves import Asked, Extremum, PeakGradients, as_durations
 from ..errors import TrajgapError
 from ..limits import Limits, half_range
 from ..problem import Problem
@@ -275,3 +275,27 @@ def reachable_total(
     if not inside or (stretched > problem.duration_upper * slack).any():
         return None
     return float(stretched.sum())
+
+
+def peak_gradients(
+    problem: Problem,
+    durations: Array,
+    points: list[Extremum],
+    nodal: Array | None = None,
+) -> PeakGradients:
+    """Gradients of the values at ``points``, extrema of the trajectory of these durations.
+
+    Parameters
+    ----------
+    durations : ndarray, shape (segments,)
+    points : list of Extremum
+        Local extrema or end points, as `extrema` returns them.
+    nodal : ndarray, shape (free, joints), optional
+
+    Returns
+    -------
+    PeakGradients
+        With respect to the way-points, with everything else fixed, including parameters from
+        chords.
+    """
+    return problem.curve.value_gradients(problem.waypoints, durations, points, nodal)

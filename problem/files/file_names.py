@@ -11,8 +11,6 @@ LONGEST_NAME = 100
 stays far below the 255 bytes that file systems allow."""
 _UNSAFE = re.compile(r"[^a-z0-9.-]+")
 """Capitals are unsafe too: some file systems do not distinguish them from lower-case letters."""
-_HASH_LENGTH = 16
-"""Characters of base 32, 80 bits: nobody finds two texts with the same ones."""
 
 
 def file_name(*parts: str) -> str:
@@ -52,4 +50,5 @@ def file_name(*parts: str) -> str:
     # Lengths first: without them ("a", "b") and ("a\0b",) would be hashed alike.
     counted = "".join(f"{len(part)}:{part}" for part in parts)
     digest = sha256(counted.encode("utf-8", "surrogatepass")).digest()
-    return f"{kept or 'name'}_{b32encode(digest).decode().lower()[:_HASH_LENGTH]}"
+    # 80 bits: nobody finds two texts with the same ones.
+    return f"{kept or 'name'}_{b32encode(digest).decode().lower()[:16]}"

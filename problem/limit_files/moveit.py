@@ -65,35 +65,29 @@ def _ranges(name: str, field: str, block: Mapping[Any, Any]) -> dict[str, Range]
         near = None if key in (*_READ, *_OTHERS) else spelt_like(str(key), _READ)
         if near:
             raise CaseError(name, f"{field}.{str(key)[:40]}", f"did you mean {near!r}?")
-    for quantity in _SIZES:
-        top = _number(name, field, block, f"max_{quantity}")
-        if _has(name, field, block, f"has_{quantity}_limits", top is not None):
-            if top is None:
-                raise CaseError(
-                    name, f"{field}.max_{quantity}", f"is missing; has_{quantity}_limits is true"
-                )
-            if quantity == BRAKING:
-                top = abs(top)  # Pilz's planner wants it negative
-            if top < 0:
-                raise CaseError(name, f"{field}.max_{quantity}", "is negative; give a size")
-            ranges[quantity] = (-top, top)
-        elif f"has_{quantity}_limits" in block:
+    for quantity in (*_SIZES, "position"):
+        sides = ("min_position", "max_position") if quantity == "position" else (f"max_{quantity}",)
+        ends = {key: _number(name, field, block, key) for key in sides}
+        has = f"has_{quantity}_limits"
+        stated = block.get(has, None not in ends.values())
+        if not isinstance(stated, bool):
+            why = f"{str(stated)[:40]!r} is neither true nor false"
+            raise CaseError(name, f"{field}.{has}", why)
+        if not stated and has in block:
             ranges[quantity] = (-math.inf, math.inf)
-    low, high = (_number(name, field, block, f"{side}_position") for side in ("min", "max"))
-    if _has(name, field, block, "has_position_limits", low is not None and high is not None):
-        if low is None or high is None:
-            raise CaseError(name, field, "has_position_limits needs min_position and max_position")
-        ranges["position"] = (low, high)
-    elif "has_position_limits" in block:
-        ranges["position"] = (-math.inf, math.inf)
+        if not stated:
+            continue
+        found = []
+        for key, end in ends.items():
+            if end is None:
+                raise CaseError(name, f"{field}.{key}", f"is missing; {has} is true")
+            if quantity == BRAKING:
+                end = abs(end)  # Pilz's planner wants it negative
+            if quantity != "position" and end < 0:
+                raise CaseError(name, f"{field}.{key}", "is negative; give a size")
+            found.append(end)
+        ranges[quantity] = (found[0] if quantity == "position" else -found[0], found[-1])
     return ranges
-
-
-def _has(name: str, field: str, block: Mapping[Any, Any], key: str, otherwise: bool) -> bool:
-    value = block.get(key, otherwise)
-    if not isinstance(value, bool):
-        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is neither true nor false")
-    return value
 
 
 def _number(name: str, field: str, block: Mapping[Any, Any], key: str) -> float | None:

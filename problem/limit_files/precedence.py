@@ -14,9 +14,6 @@ from ..printed import is_linear, spelling_hint, spelt_like
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite if that side has none."""
 
-_UNKNOWN = "is not a joint with limits there; rename it or add it;"
-"""What is said of a joint that a file does not know, before the nearest name."""
-
 
 @dataclass(frozen=True)
 class StatedLimits:
@@ -122,8 +119,9 @@ def _check_names(joints: Sequence[str], sources: Sequence[StatedLimits]) -> None
     for one in files:
         others = [name for name in one.ranges if name not in joints]
         unknown = [joint for joint in joints if joint not in one.ranges]
+        said = "is not a joint with limits there; rename it or add it;"
         faults = [
-            (joint, f"{_UNKNOWN} {spelling_hint(joint, others or one.ranges)}")
+            (joint, f"{said} {spelling_hint(joint, others or one.ranges)}")
             for joint in unknown
             if len(unknown) == len(joints)
             or spelt_like(joint, others)

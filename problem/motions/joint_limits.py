@@ -11,11 +11,9 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..characters import listed
 from ..errors import TrajgapError
-from ..limits import QUANTITIES, Limits
+from ..limits import ORDERS as ORDERS, Limits
 from .motion import LARGEST
 
-ORDERS = ("position", *QUANTITIES)
-"""Words for derivatives 0 to 3."""
 BRAKING = "deceleration"
 """Acceleration while the speed falls, where it has a limit of its own."""
 GIVEN = "given"

@@ -82,15 +82,6 @@ def up(number: Fraction) -> float:
 class Printed:
     """A number as printed.
 
-    Parameters
-    ----------
-    text : str
-        The digits, for example ``"0.660"`` or ``"−1.6336"`` (any minus sign). The text is kept,
-        with an ASCII minus sign.
-    exact : bool
-        Whether the number is exact. A printed number is not: it stands for every value that rounds
-        to its digits.
-
     Raises
     ------
     TrajgapError
@@ -105,7 +96,11 @@ class Printed:
     """
 
     text: str
+    """The digits, for example ``"0.660"`` or ``"−1.6336"`` (any minus sign). The text is kept, with
+    an ASCII minus sign."""
     exact: bool = False
+    """Whether the number is exact. A printed number is not: it stands for every value that rounds
+    to its digits."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.text, str):

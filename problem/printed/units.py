@@ -19,6 +19,7 @@ LengthUnit = Literal["m", "cm", "mm"]
 """Of links, of positions of the end, and of joints that slide."""
 
 _POSITIONS = (*get_args(AngleUnit), *get_args(LengthUnit))
+"""Units of what a joint's variable may be."""
 CHOICES = MappingProxyType(
     {
         "position": _POSITIONS,

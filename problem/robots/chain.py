@@ -35,20 +35,6 @@ class JointKind(StrEnum):
 class Chain:
     """A serial robot, one row of its Denavit–Hartenberg table per joint.
 
-    Parameters
-    ----------
-    a, alpha, d : array_like, shape (joints,)
-        Link lengths in m, twists in rad, offsets in m. In the modified convention row i holds
-        a and α of the link before, as its tables print them.
-    theta_offset : array_like, shape (joints,), optional
-        Angle of each joint where its variable is 0, rad; 0 by default.
-    kinds : sequence of JointKind, optional
-        All revolute by default.
-    lower, upper : array_like, shape (joints,), optional
-        Bounds of the variables, rad or m; none by default.
-    labels : sequence of str, optional
-        Joint labels; "1", "2", ... by default.
-
     Raises
     ------
     TrajgapError
@@ -59,11 +45,17 @@ class Chain:
     a: Array
     alpha: Array
     d: Array
+    """Shape (joints,). Link lengths in m, twists in rad, offsets in m. In the modified convention
+    row i holds a and α of the link before, as its tables print them."""
     theta_offset: Array = field(default_factory=lambda: np.zeros(1))
+    """Shape (joints,). Angle of each joint where its variable is 0, rad; 0 by default."""
     kinds: tuple[JointKind, ...] = ()
+    """All revolute by default."""
     lower: Array = field(default_factory=lambda: np.array(-np.inf))
     upper: Array = field(default_factory=lambda: np.array(np.inf))
+    """Shape (joints,). Bounds of the variables, rad or m; none by default."""
     labels: tuple[str, ...] = ()
+    """Joint labels; "1", "2", ... by default."""
     name: str = ""
 
     def __post_init__(self) -> None:

@@ -9,6 +9,7 @@ from importlib.resources import files
 from typing import Any, cast
 
 from ..curves import Interpolant
+from ..limits import QUANTITIES
 from .instance import BenchmarkInstance
 from .shelf import suite_version
 
@@ -72,7 +73,7 @@ def plain_text(instance: BenchmarkInstance) -> str:
     # The suite holds declared piecewise polynomials alone.
     curve = cast(Interpolant, instance.problem().curve)
     joints = [None] * instance.joints
-    limits = {key: raw["limits"].get(key, [math.inf for _ in joints]) for key in _LIMITS}
+    limits = {key: raw["limits"].get(key, [math.inf for _ in joints]) for key in QUANTITIES}
     known: list[tuple[str, object]] = [
         ("format", FORMAT),
         ("suite", suite_version()),
@@ -97,10 +98,6 @@ def plain_text(instance: BenchmarkInstance) -> str:
     if instance.certificate_sha256 is not None:
         known.append(("certificate_sha256", instance.certificate_sha256))
     return "".join(f"{key} = {_toml(value)}\n" for key, value in known)
-
-
-_LIMITS = ("velocity", "acceleration", "jerk")
-"""Keys of the limits, in the order of their derivatives."""
 
 
 def _prescribed(curve: Interpolant, joints: int) -> list[tuple[int, int, list[float]]]:
