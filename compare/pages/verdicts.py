@@ -15,6 +15,8 @@ from ..documents import ClaimVerdict, Finding, Gap, Severity, Why, facts
 from .numbers import asked_cells, problem_cell
 from .units import both_units, one_unit
 
+_FEW = 10
+"""Equal shares of a total up to which each is shown."""
 _TITLES = {rule.id: rule.title for rule in RULES}
 """What each rule looks at, by its id."""
 
@@ -83,7 +85,10 @@ def _bounds(problem: Problem) -> str:
     text = f"at least {', '.join(low)} s" if low != ["0"] else "positive"
     text += f", at most {', '.join(high)} s" if high != ["inf"] else ""
     if problem.shares is not None:
-        text += f"; shares of the total fixed: {', '.join(f'{s:.4g}' for s in problem.shares)}"
+        shares = [f"{s:.4g}" for s in problem.shares]
+        equal = len(shares) > _FEW and len(set(shares)) == 1
+        shown = f"{len(shares)} times {shares[0]}" if equal else ", ".join(shares)
+        text += f"; shares of the total fixed: {shown}"
     return text
 
 

@@ -102,6 +102,9 @@ def test_sampled_points_leave_open_what_two_splines_differ() -> None:
         low, high = map(float, str(found.computed).removesuffix(" s").split(" to "))
         return low, high
 
+    sampled = finding(along(wave(30), "9", path="sampled", limits=EXACT), "t", "TG305")
+    assert sampled.basis is Basis.COMPUTED
+    assert "as a spline of another degree does" in sampled.sentences[1]
     truth, coarse, fine = ends(161, "curve"), ends(41, "sampled"), ends(81, "sampled")
     for low, high in (coarse, fine):
         assert low < truth[0] < truth[1] < high
