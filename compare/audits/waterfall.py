@@ -150,6 +150,7 @@ def _along_path(study: Study, pair: Pair) -> Waterfall:
         reading=pair.reading,
         claim=claim.id,
         steps=(*_published(row), shortest),
+        longest_optimum=known(best.upper if np.isfinite(best.upper) else None, "not bounded"),
     )
 
 

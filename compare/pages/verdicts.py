@@ -176,7 +176,11 @@ def _bounds(problem: Problem) -> str:
     text = f"at least {', '.join(low)} s" if low != ["0"] else "positive"
     text += f", at most {', '.join(high)} s" if high != ["inf"] else ""
     if problem.shares is not None:
-        text += f"; shares of the total fixed: {', '.join(f'{s:.4g}' for s in problem.shares)}"
+        shares = [f"{s:.4g}" for s in problem.shares]
+        # Up to ten equal shares are shown one by one.
+        equal = len(shares) > 10 and len(set(shares)) == 1
+        shown = f"{len(shares)} times {shares[0]}" if equal else ", ".join(shares)
+        text += f"; shares of the total fixed: {shown}"
     return text
 
 

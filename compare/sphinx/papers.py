@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from ...nlp import Evidence
 from ..documents import (
+    ALONG_PATH,
     OWN_OPTIMA,
     PUBLISHED,
     RATIOS_OPTIMUM,
@@ -184,12 +185,15 @@ def distance_of(case: AuditedCase) -> Distance | None:
     otherwise = {c.claim for c in case.claims if not isinstance(c.objective, Why)}
     for entry in case.waterfalls:
         steps = {step.name: step for step in entry.steps if not isinstance(step.time, Why)}
-        own = next((n for n in (SHARED_OPTIMUM, RATIOS_OPTIMUM) if n in steps), None)
+        names = (SHARED_OPTIMUM, RATIOS_OPTIMUM, ALONG_PATH)
+        own = next((n for n in names if n in steps), None)
         if PUBLISHED not in steps or own is None:
             continue
         printed, best = steps[PUBLISHED], steps.get(OWN_OPTIMA, steps[own])
-        # A certified interval is narrower than what is shown; that of the joints' optima is not.
-        low, high = best.ends if OWN_OPTIMA in steps else (best.value, best.value)
+        # A certified interval is narrower than what is shown; those of the joints' optima and of
+        # a path are not.
+        wide = OWN_OPTIMA in steps or own == ALONG_PATH
+        low, high = best.ends if wide else (best.value, best.value)
         longest = None if OWN_OPTIMA in steps else value_or_none(entry.longest_optimum)
         return Distance(
             printed.value,

@@ -14,6 +14,12 @@ from ..printed_row import PrintedRow
 from ..study import Study
 from .rule_group import Explained, rule_group
 
+_SAMPLED = (
+    "Both times hold for all paths that differ from the spline through the way-points by at most "
+    "twice as much as a spline of another degree does."
+)
+"""What is added if way-points sample a path."""
+
 
 @rule_group(
     TG305=Explained(
@@ -26,8 +32,8 @@ from .rule_group import Explained, rule_group
         "checkable, because a motion may take longer. If it is called optimal, a longer total is "
         "inconsistent too. Both bounds hold however the digits were rounded, and where points "
         "sample the path, for all paths that differ from their spline by at most twice as much as "
-        "a quintic spline does.",
-        "A lap is called time-optimal at 1.7000 s, and a motion along it takes 1.6462 s.",
+        "a spline of another degree does.",
+        "A lap is called time-optimal at 1.7000 s, and a motion along it takes 1.6474 s.",
     ),
 )
 def judge_along_paths(study: Study) -> Iterator[Finding]:
@@ -65,18 +71,20 @@ def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Findi
         kind, said = "wide", "is not below the first, and they are far apart"
     elif optimal:
         verdict, said = ClaimVerdict.INCONSISTENT, f"is {far} longer"
-    upper = f"takes {best.upper:.6g} s" if np.isfinite(best.upper) else "was not found"
+    upper = f"one takes {best.upper:.6g} s" if np.isfinite(best.upper) else "none was found"
     printed = f"{claim.value} {row.study.time_unit}"
     said = (
         f"Along the path, from rest to rest, no motion within the limits takes less than "
-        f"{best.lower:.6g} s, and one {upper}. The printed {printed} {said}."
+        f"{best.lower:.6g} s, and {upper}. The printed {printed} {said}."
     )
     computed = f"{best.lower:.6g} to {best.upper:.6g} s"
-    return _found(row, about, verdict, kind, said, printed=printed, computed=computed)
+    notes = (_SAMPLED,) if claim.path == "sampled" else ()
+    return _found(row, about, verdict, kind, said, *notes, printed=printed, computed=computed)
 
 
 def _found(
-    row: PrintedRow[Any], about: str, verdict: ClaimVerdict, kind: str, said: str, **facts: Any
+    row: PrintedRow[Any], about: str, verdict: ClaimVerdict, kind: str, *said: str, **facts: Any
 ) -> Finding:
-    given = {"verdict": verdict, "basis": Basis.ENCLOSURE, "claim": about}
-    return row.finding("TG305", kind, said, **given | facts)
+    basis = Basis.COMPUTED if row.claim.path == "sampled" else Basis.ENCLOSURE
+    given = {"verdict": verdict, "basis": basis, "claim": about}
+    return row.finding("TG305", kind, *said, **given | facts)

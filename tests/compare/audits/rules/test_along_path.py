@@ -8,7 +8,8 @@ from support.findings import audited_text, finding, verdicts
 from support.made_up import claim, paper, sentence, total
 from trajgap.compare.audits.stated import timed_along_path
 from trajgap.compare.documents import ALONG_PATH, Basis, ClaimVerdict, Why
-from trajgap.problem import CaseError, parse_case
+from trajgap.nlp.retiming import retime
+from trajgap.problem import CaseError, Limits, fit, parse_case, quintic_spline
 
 NATURAL = {"family": "cubic-spline", "end_orders": [2]}
 SPACED = {"ratios": "equal"}
@@ -101,10 +102,45 @@ def test_sampled_points_leave_open_what_two_splines_differ() -> None:
         low, high = map(float, str(found.computed).removesuffix(" s").split(" to "))
         return low, high
 
+    sampled = finding(along(wave(30), "9", path="sampled", limits=EXACT), "t", "TG305")
+    assert sampled.basis is Basis.COMPUTED
+    assert "as a spline of another degree does" in sampled.sentences[1]
     truth, coarse, fine = ends(161, "curve"), ends(41, "sampled"), ends(81, "sampled")
     for low, high in (coarse, fine):
         assert low < truth[0] < truth[1] < high
     assert fine[1] - fine[0] < coarse[1] - coarse[0]
+
+
+def honest(seed: int) -> str:
+    """A paper that rounds TOPPRA's time along its path, and calls it optimal."""
+    random = np.random.default_rng(seed)
+    joints, points = int(random.integers(2, 4)), 400
+    waves, turns, phases = (
+        random.uniform(*ends, (3, joints)) for ends in ((-1, 1), (1, 5), (0, 6))
+    )
+
+    def path(count: int) -> np.ndarray:
+        u = np.linspace(0.0, 1.0, count)[:, None]
+        return sum(waves[k] / (k + 1) * np.sin(turns[k] * u + phases[k]) for k in range(3))
+
+    caps = random.uniform(0.3, 3.0, joints), random.uniform(0.5, 8.0, joints)
+    dense = fit(quintic_spline(points, ((3, 0.0), (4, 0.0))), path(points + 1), np.ones(points))
+    found = retime(dense, Limits(*caps), end_speeds=(0.0, 0.0), gridpoints=(12, 25, 50))
+    assert found.applicable
+    places, own, few = random.integers(4, 9), random.integers(2, 5), random.integers(2, 4)
+    rows = [[f"{v:.{places}f}" for v in row] for row in path(int(random.integers(30, 90))).T]
+    digits = [[f"{v:.{few}f}" for v in row] for row in caps]
+    spline = {"family": "quintic-spline", "end_orders": [3, 4]} if seed % 2 else NATURAL
+    limits = dict(zip(("velocity", "acceleration"), digits, strict=True))
+    total = f"{found.extrapolated:.{own}f}"
+    return along(rows, total, OPTIMAL, path="sampled", curve=spline, limits=limits)
+
+
+@pytest.mark.parametrize(
+    "seed", [3, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(20, 30))]
+)
+def test_an_honest_total_along_a_sampled_path_is_not_accused(seed: int) -> None:
+    assert finding(honest(seed), "s", "TG305").verdict is not ClaimVerdict.INCONSISTENT
 
 
 @pytest.mark.parametrize(
