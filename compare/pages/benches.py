@@ -31,7 +31,7 @@ from ..documents import (
     percent,
     value_or_none,
 )
-from ..pictures import Anytime, Picture, drawn, gap_picture, profile_picture, themed
+from ..pictures import Anytime, Picture, gap_picture, pictured, profile_picture, themed
 from .folders import check_folder, write_folder
 from .rendering import page_text
 
@@ -112,7 +112,7 @@ def _ends(at: str, rows: Mapping[str, Sequence[gaps.Row]], optimum: float, of: s
     """Share of the runs of every optimiser that end within each gap."""
     shares = {label: gaps.share_within(gaps.totals_of(own), optimum) for label, own in rows.items()}
     picture = profile_picture(shares, title=f"Where runs end: {of}")
-    return Folded("Where runs end", (drawn(picture, "profile", at),))
+    return Folded("Where runs end", (pictured(picture, "profile", at),))
 
 
 def _page(results: Sequence[tuple[BenchResult, gaps.Runs]]) -> Page:
@@ -152,7 +152,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, gaps.Runs]]) -> list[Sect
     said = (("What was chosen", chosen), ("Runs without an answer", messages))
     found = (
         *overall_blocks(standings),
-        drawn(picture, "gaps", "all"),
+        pictured(picture, "gaps", "all"),
         _ends("all", rows, 1.0, head),
         *(Folded(title, blocks) for title, blocks in said if blocks),
     )
@@ -182,7 +182,7 @@ def _section(at: int, head: str, result: BenchResult, runs: gaps.Runs) -> Sectio
     upper = result.optimum.upper
     blocks: list[Block] = [
         *bench_blocks(result),
-        drawn(bench_picture(result, runs), "gaps", str(at)),
+        pictured(bench_picture(result, runs), "gaps", str(at)),
         _ends(str(at), runs.by_label, upper, result.title),
     ]
     blocks.append(Folded("Every target", (_targets(result.standings),)))

@@ -16,9 +16,9 @@ from ..audits.rules import HANDLED, attributed, has_vertices, placed, vertices
 from ..blocks import Block, Folded, Grid, Prose, Section, Terms, table
 from ..documents import Effect, ExaminedInstances, Procedure, Why
 from ..pictures import (
-    drawn,
     instances_picture,
     jump_picture,
+    pictured,
     polygon_picture,
     tent_picture,
     tent_scatter,
@@ -68,7 +68,7 @@ def _jumps_of(
         f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
         f"{len(moved)} readings. Limits are judged inside the segments, separately from jumps."
     )
-    yield drawn(picture, "jumps", problem, first.id, caption=caption)
+    yield pictured(picture, "jumps", problem, first.id, caption=caption)
     grid = []
     for jump in velocity_jumps(posed, durations):
         joint = [statement.labels.index(jump.joint)]
@@ -101,7 +101,7 @@ def _polygons(study: Study) -> Iterator[Block]:
             f"of both explains. No reading enters: {both} printed in one unit, and time is not "
             "involved."
         )
-        yield drawn(picture, "polygon", claim.id, caption=caption)
+        yield pictured(picture, "polygon", claim.id, caption=caption)
 
 
 _Path = tuple[Array, tuple[str, ...], tuple[bool, ...], str]
@@ -134,7 +134,7 @@ def _workspaces(study: Study) -> Iterator[Block]:
     caption = f"{where}, {chain.convention} convention. Joints uniform in {ranges}."
     if dh.alpha_signs == "uncertain":
         caption += " Twists have their printed signs; the text may have lost some of them."
-    yield drawn(picture, "workspace", caption=f"{caption} {said}".strip())
+    yield pictured(picture, "workspace", caption=f"{caption} {said}".strip())
 
 
 def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
@@ -222,7 +222,7 @@ def _tents(study: Study) -> Iterator[Block]:
             f"{high:g} s; first two durations of every member. How orbits fill the population is "
             f"{printed}; the listed choice is “{built.tent_rule}”."
         )
-        yield drawn(picture, "tent", block.id, caption=caption)
+        yield pictured(picture, "tent", block.id, caption=caption)
         lengths = {
             TentRule.COORDINATE: built.whales,
             TentRule.MEMBER: dimensions,
@@ -273,7 +273,7 @@ def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -
             "note",
         ),
         Terms(_design(study, result)),
-        drawn(picture, "family", block.id, caption=caption),
+        pictured(picture, "family", block.id, caption=caption),
         table(_COLUMNS, _rows(entry, result, None), "Reductions of the total, in %"),
         Folded("Reductions by step length", by_step),
         Folded(f"Totals of every instance, {stands}", (_instances(entry, result.labels),)),

@@ -14,7 +14,7 @@ from ...problem.cases import DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, planned_apart
 from ..blocks import Block, Drawn, Folded, Prose, Section, table
 from ..documents import OWN_OPTIMA
-from ..pictures import Runs, convergence, drawn, endings, landscape, motion_picture
+from ..pictures import Runs, convergence, endings, landscape, motion_picture, pictured
 from .numbers import REPLAY_COLUMNS, noted, paper_units, problem_name, replay_rows
 
 _Row = PrintedRow[DurationsClaim | MaximumClaim]
@@ -40,7 +40,7 @@ def motions(one: CaseAudit) -> Section:
                 units=paper_units(one.study.case.statement(*pair)),
             )
             caption = noted(one.study, pair.reading).strip()
-            blocks.append(drawn(picture, "optimum", pair.problem, caption=caption))
+            blocks.append(pictured(picture, "optimum", pair.problem, caption=caption))
     return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
 
 
@@ -82,7 +82,7 @@ def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
             units=paper_units(row.statement),
         )
         caption = f"{'; '.join(r.claim.where for r in rows)}.{under}"
-        yield drawn(picture, "motion", row.problem, row.claim.id, caption=caption)
+        yield pictured(picture, "motion", row.problem, row.claim.id, caption=caption)
     for tables, singles in _tables_by_joint(study, pair):
         if singles[0].unmoved is None:
             yield _joint_by_joint(tables, singles)
@@ -123,7 +123,7 @@ def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
         f"rounded: {each}.{noted(study, pair.reading)}"
     )
     name = "motion", pair.problem, "joints", str(rows[0].claim.table)
-    return drawn(picture, *name, caption=caption)
+    return pictured(picture, *name, caption=caption)
 
 
 def searches(one: CaseAudit) -> Section:
@@ -140,7 +140,7 @@ def searches(one: CaseAudit) -> Section:
         ends = {each: np.array([r.reported_time for r in one]) for each, one in runs.items()}
         picture = endings(ends, references, printed, title=f"Totals of all runs: {name}")
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
-        blocks.append(drawn(picture, "totals", pair.problem, caption=caption))
+        blocks.append(pictured(picture, "totals", pair.problem, caption=caption))
         grid = table(REPLAY_COLUMNS, replay_rows(study, pair))
         blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
     last = study.options.seeds - 1
@@ -194,7 +194,7 @@ def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> 
         "Gap to the optimum, linear up to 0.01 % and logarithmic beyond. The band around a printed "
         "total is its rounding."
     )
-    yield drawn(picture, "convergence", pair.problem, caption=caption)
+    yield pictured(picture, "convergence", pair.problem, caption=caption)
 
 
 def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float]]:
@@ -272,4 +272,4 @@ def _landscape(
     caption = "Exact totals: durations of any shares, stretched until the first limit is reached."
     with suppress(TrajgapError):
         picture = landscape(problem, optimum, points, ends, title=title)
-        yield drawn(picture, *name, caption=caption)
+        yield pictured(picture, *name, caption=caption)

@@ -27,7 +27,7 @@ from ..blocks import (
 )
 from ..documents import UNITS, Waterfall, Why, by_search, ranged, si_unit
 from ..gaps import gap, reference_of, spread
-from ..pictures import drawn, reached_picture, waterfall_picture
+from ..pictures import pictured, reached_picture, waterfall_picture
 
 
 def paper_units(statement: Statement) -> dict[tuple[str, str], tuple[str, float]]:
@@ -105,7 +105,7 @@ def card_picture(one: CaseAudit) -> Drawn | None:
     several = len({w.problem for w in one.waterfalls}) > 1
     title = "Where the time goes"
     title += f": {problem_name(one, waterfall.problem)}" if several else ""
-    return drawn(waterfall_picture(waterfall, title=title, narrow=True), "time", inside=True)
+    return pictured(waterfall_picture(waterfall, title=title, narrow=True), "time", inside=True)
 
 
 def where_time_goes(one: CaseAudit) -> Section:
@@ -137,7 +137,7 @@ def reached_runs(one: CaseAudit) -> Section:
     blocks: list[Block] = []
     for at, (title, runs) in enumerate(by_search(one.reached).items()):
         picture = reached_picture(runs, one.waterfalls, title=title)
-        own = reached_table(runs, title), drawn(picture, "reached", str(at))
+        own = reached_table(runs, title), pictured(picture, "reached", str(at))
         blocks += own if at < _FEW else [Folded(title, own)]
     if blocks:
         meaning = Folded("How to read this", (Prose(REACHED_MEANING, "note"),))
@@ -185,7 +185,7 @@ def _drawn(one: CaseAudit, waterfall: Waterfall) -> Drawn:
     caption = "Bars start at 0; best known values are hatched, certified ones solid."
     if waterfall.claim:
         caption += f" The first bar is printed in {place(one.case.claim(waterfall.claim))}."
-    return drawn(picture, "waterfall", waterfall.problem, waterfall.reading, caption=caption)
+    return pictured(picture, "waterfall", waterfall.problem, waterfall.reading, caption=caption)
 
 
 def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> Grid:

@@ -4,9 +4,9 @@ from .drawing import (
     KINDS as KINDS,
     THEME as THEME,
     Picture as Picture,
-    drawn as drawn,
     embedded as embedded,
     picture_bytes as picture_bytes,
+    pictured as pictured,
     svg as svg,
     themed as themed,
 )

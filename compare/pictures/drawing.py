@@ -235,7 +235,7 @@ def svg(figure: Figure) -> str:
     return text[: opening.start()] + tag + f"\n {words}" + text[opening.end() :]
 
 
-def drawn(picture: Picture, *name: str, caption: str = "", inside: bool = False) -> Drawn:
+def pictured(picture: Picture, *name: str, caption: str = "", inside: bool = False) -> Drawn:
     """A picture as a block, under a name that is unique in its page."""
     return Drawn(file_name(*name), svg(picture), picture.title, caption, inside)
 

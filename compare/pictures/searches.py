@@ -142,9 +142,10 @@ def _panel(
         colour, line = series(at)
         gaps = 100 * (traces / optimum - 1)
         iterations = np.arange(gaps.shape[1], dtype=np.float64)
-        # Drawn one by one are all runs, or some by rank from the best end to the worst.
-        ranks = np.linspace(0, len(gaps) - 1, min(len(gaps), _RUNS)).round().astype(np.intp)
-        chosen = np.argsort(gaps[:, -1], kind="stable")[ranks]
+        chosen = np.arange(len(gaps))
+        if len(gaps) > _RUNS:  # of many runs some, by rank from the best end to the worst
+            ranks = np.linspace(0, len(gaps) - 1, _RUNS).round().astype(np.intp)
+            chosen = np.argsort(gaps[:, -1], kind="stable")[ranks]
         curves = [_stairs(iterations, g) for g in gaps[chosen]]
         axes.add_collection(LineCollection(curves, colors=colour, linewidths=0.5, alpha=0.28))
         # Quantiles that are runs: a run without answer is infinite and can't be averaged.

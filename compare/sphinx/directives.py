@@ -51,7 +51,7 @@ from ..documents import (
     worth,
 )
 from ..gaps import SIZES, Board, curve_of, size_of
-from ..pictures import drawn, reached_picture, waterfall_picture
+from ..pictures import pictured, reached_picture, waterfall_picture
 from .docutils_nodes import nodes_of
 from .leaderboard import HANDLINGS, board_of, board_parts, boards_drawn, said
 from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn
@@ -238,7 +238,7 @@ class WaterfallShown(FromCase):
                 picture = waterfall_picture(found, title=case.title)
                 said = [f"{s.name}: {s.note}." for s in found.steps if s.name in OPTIMA_STEPS]
                 return [
-                    drawn(picture, "waterfall", name, found.problem, found.reading),
+                    pictured(picture, "waterfall", name, found.problem, found.reading),
                     *(Prose(capital(one), "note") for one in (*said, *found.without_optimum)),
                     Folded("Step by step", (steps_table(found),)),
                 ]
@@ -255,7 +255,7 @@ class ReachedShown(FromCase):
         for at, (title, runs) in enumerate(by_search(case.reached).items()):
             picture = reached_picture(runs, case.waterfalls, title=title)
             place = ("reached", name, runs[0].problem, runs[0].searched)
-            own = reached_table(runs), drawn(picture, *place)
+            own = reached_table(runs), pictured(picture, *place)
             # Two stand open, such as each joint separately and all together.
             found += [Prose(f"{title}."), *own] if at < 2 else [Folded(title, own)]
         return [*found, Prose(REACHED_MEANING, "note")] if found else []
@@ -275,7 +275,7 @@ class Papers(FromBlocks):
         rows = paper_rows(self.results, self.options.get("kinds", ""))
         for row in rows:
             self.place(self.config.trajgap_results, f"{row.name}.json")
-        picture = [drawn(papers_drawn(rows), "papers")] if "drawn" in self.options else []
+        picture = [pictured(papers_drawn(rows), "papers")] if "drawn" in self.options else []
         return [*picture, table(COLUMNS, map(self._cells, rows), "", "sortable", "papers")]
 
     def _cells(self, row: PaperRow) -> list[Cell | str]:
@@ -395,7 +395,7 @@ class Leaderboard(FromBlocks):
         )
         match self.arguments[0]:
             case "picture":
-                return [drawn(boards_drawn(self._both()), "leaderboard")]
+                return [pictured(boards_drawn(self._both()), "leaderboard")]
             case "table":
                 missing = Prose(f"Not complete yet: {', '.join(board.missing)}.")
                 return [board_table(board), *([missing] if board.missing else [])]
