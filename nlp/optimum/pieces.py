@@ -252,7 +252,7 @@ def _evaluated(a: Any, s: Any) -> Any:
 
 def clocked_bend(trajectory: Any, places: Places) -> Array:
     """Second derivatives by s of derivatives in time, N_{r+1}′ over t′²ʳ where these turn."""
-    every = [trajectory.numerator(r) for r in range(5)]
+    every = [trajectory.derivatives(0), *trajectory.numerators]
     out, k, power = np.zeros(places.s.size), places.segment, np.polynomial.polynomial
     for i, (j, r, s) in enumerate(zip(places.joint, places.order, places.s, strict=True)):
         speed = power.polyval(s, power.polyder(trajectory.clock[k[i]]))

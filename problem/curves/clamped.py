@@ -22,7 +22,6 @@ from .clamped_declaration import (
 from .clamped_fit import (
     clamped_by_durations,
     clamped_enclosed,
-    clamped_fitted,
     clamped_reach,
     clamped_shape,
 )
@@ -39,7 +38,6 @@ from .kind import (
 )
 from .peak import Extremum
 from .stretched import StretchedCurve
-from .trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -133,12 +131,6 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         if self.stretched:
             return super().enclosed(waypoints, durations)
         return clamped_enclosed(self, waypoints, durations)
-
-    def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
-        """`fit` in float64."""
-        if self.stretched:
-            return super().fitted(waypoints, durations)
-        return clamped_fitted(self, waypoints, durations)
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """The way-points themselves, unless stretched."""

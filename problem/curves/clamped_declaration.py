@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import lru_cache
 from itertools import pairwise
 from math import isfinite
 
@@ -318,12 +317,8 @@ def fractions_of(curve: ClampedDeclaration, waypoints: Array) -> Fractions | Non
     return tuple(chord_fractions(q[:, None])[0] for q in waypoints.T)
 
 
-@lru_cache(maxsize=64)
 def average_matrix(curve: ClampedDeclaration) -> Array:
-    """Inner knots as combinations of the way-points' parameters, shape (inner knots, W).
-
-    It is shared: not to be written to.
-    """
+    """Inner knots as combinations of the way-points' parameters, shape (inner knots, W)."""
     w, p = curve.waypoints, curve.degree
     if curve.knots is Knots.GIVEN:
         # Parameters start at 0, so a fraction of the last one is a fraction of the whole.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import comb
 
 import numpy as np
@@ -128,16 +127,13 @@ def _interpolated(
 
     In extended precision where the sites are: an approximate inverse B of the system A in float64
     refines the solution, and (I − |BA − I|)⁻¹ |B| |residual| bounds its error, entry by entry.
-
-    Raises
-    ------
-    CurveError
-        If a site leaves the support of its basis function (Schoenberg and Whitney).
     """
     p, bases = curve.degree, _span_bases(knots, curve.degree)
     span, place = _places_on(knots, p, sites)
     matrix = _conditions_at(bases, span, place, curve.end_orders)
-    _check_inside(curve, *(of.astype(np.float64) for of in (knots, sites)))
+    inside = _inside(curve, *(of.astype(np.float64) for of in (knots, sites)))
+    if not inside.all():
+        raise _not_passing(curve, int(np.argmin(inside)) - len(curve.end_orders))
     right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
     right[: sites.size] = waypoints
     index = np.arange(bases.shape[0])[:, None] + np.arange(p + 1)
@@ -169,13 +165,6 @@ def _interpolated(
     error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)
     scaled, error = (np.asarray(one, dtype=np.float64) for one in (scaled, error))
     return Spline(breaks.astype(np.float64), scaled, error + _EPS * np.abs(scaled))
-
-
-def _check_inside(curve: ClampedDeclaration, knots: Array, sites: Array) -> None:
-    """Refuse a way-point outside the support of its basis function."""
-    inside = _inside(curve, knots, sites)
-    if not inside.all():
-        raise _not_passing(curve, int(np.argmin(inside)) - len(curve.end_orders))
 
 
 def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
@@ -285,21 +274,9 @@ def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Arr
     """Trajectory with pieces between knots, and a bound on the error of every extremum."""
     wide, long = waypoints.astype(np.longdouble), durations.astype(np.longdouble)
     found = _joined(splines_of(curve, wide, long))
-    trajectory = _in_time(curve, found)
+    degrees = (curve.degree,) * found.lengths.size
+    trajectory = Trajectory(found.lengths, found.scaled, degrees)
     return Enclosed(trajectory, value_errors(trajectory, found.error))
-
-
-def clamped_fitted(curve: ClampedDeclaration, waypoints: Array, durations: Array) -> Trajectory:
-    """The trajectory of `clamped_enclosed` in float64."""
-    splines = []
-    for _, knots, a, _ in _moved(curve, waypoints, durations):
-        scaled = a[:, 0].real.transpose(1, 0, 2)
-        splines.append(Spline(knots, scaled, np.zeros(scaled.shape)))
-    return _in_time(curve, _joined(splines))
-
-
-def _in_time(curve: ClampedDeclaration, spline: Spline) -> Trajectory:
-    return Trajectory(spline.lengths, spline.scaled, (curve.degree,) * spline.lengths.size)
 
 
 def _knots_of(
@@ -317,30 +294,6 @@ def _knots_of(
     return times, list(zip(joints, knots, strict=True))
 
 
-def _moved(
-    curve: ClampedDeclaration, waypoints: Array, durations: Array
-) -> list[tuple[NDArray[np.int64], Array, Numbers, Numbers]]:
-    """Joints that share their knots, these, and the splines that each duration steps to."""
-    return _moved_again(curve, waypoints.shape[1], waypoints.tobytes(), durations.tobytes())
-
-
-@lru_cache(maxsize=2)  # a search asks for a motion, then for its gradients
-def _moved_again(
-    curve: ClampedDeclaration, joints: int, waypoints: bytes, durations: bytes
-) -> list[tuple[NDArray[np.int64], Array, Numbers, Numbers]]:
-    q, h = np.frombuffer(waypoints).reshape(-1, joints), np.frombuffer(durations)
-    times, groups = _knots_of(curve, q, h + 1j * STEP * np.eye(h.size))
-    found = []
-    for own, knots in groups:
-        real = knots[0].real
-        _check_inside(curve, real, times[0].real)
-        a, widths, regular = _polynomials(curve, q[:, own], times, knots)
-        if not regular.all():
-            raise _not_passing(curve, 0)
-        found.append((own, real[curve.degree : real.size - curve.degree], a, widths))
-    return found
-
-
 def clamped_by_durations(
     curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> Array:
@@ -349,17 +302,19 @@ def clamped_by_durations(
     Joints with knots of their own have them at fixed shares of the total, so a place that stays
     where it is on common pieces does so on theirs.
     """
-    at, found = places_of(points), np.empty((len(points), curve.segments))
-    every = _moved(curve, waypoints, durations)
-    breaks = every[0][1] if len(every) == 1 else _union([inner for _, inner, *_ in every])
+    at, found, p = places_of(points), np.empty((len(points), curve.segments)), curve.degree
+    times, groups = _knots_of(curve, waypoints, durations + 1j * STEP * np.eye(curve.segments))
+    every = [knots[0, p : knots.shape[1] - p].real for _, knots in groups]
+    breaks = every[0] if len(every) == 1 else _union(every)
     time = breaks[at.segment] + at.s * np.diff(breaks)[at.segment]
-    for own, inner, a, widths in every:
+    for (own, knots), inner in zip(groups, every, strict=True):
+        a, widths, _ = _polynomials(curve, waypoints[:, own], times, knots)
         mine = np.isin(at.joint, own)
         piece, order = _parents(inner, breaks)[at.segment[mine]], at.order[mine]
-        s = (time[mine] - inner[piece]) / np.diff(inner)[piece]
-        rows = derivative_rows(s, order)[:, : len(a)]
-        values = np.einsum("mvi,im->vi", a[:, :, piece, at.joint[mine] - own[0]], rows)
-        found[mine] = (values / widths[:, piece] ** order).imag.T / STEP
+        rows = derivative_rows((time[mine] - inner[piece]) / np.diff(inner)[piece], order)
+        part = a[:, :, piece, at.joint[mine] - own[0]]
+        values = np.einsum("mvi,im->vi", part, rows[:, : p + 1]) / widths[:, piece] ** order
+        found[mine] = values.imag.T / STEP
     return found
 
 

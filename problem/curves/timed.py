@@ -101,16 +101,10 @@ class ClockedTrajectory(Trajectory):
         return np.ascontiguousarray(self.clock.T[:, :, None])
 
     @cached_property
-    def _numerators(self) -> list[Array]:
-        """Those that somebody has asked for, N_1 first."""
-        return [self.derivatives(0), derived(self.derivatives(0), 1)]
-
-    def numerator(self, order: int) -> Array:
-        """N_1 to N_4 of shape (powers, pieces, joints); for order 0 the curve itself."""
-        found = self._numerators
-        while len(found) <= order:
-            found.append(following(found[-1], self._time, len(found) - 1))
-        return found[order]
+    def numerators(self) -> list[Array]:
+        """N_1 to N_4, each of shape (powers, pieces, joints)."""
+        found = numerators(self.derivatives(0), self._time, 4)
+        return [np.ascontiguousarray(a, dtype=np.float64) for a in found]
 
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` in time at ``time`` (s), by inverting t(e)."""
@@ -134,11 +128,11 @@ class ClockedTrajectory(Trajectory):
         if order == 0:
             return super().turns(0, pieces)
         own = slice(None) if pieces is None else pieces
-        inner = roots_in_unit(self.numerator(order + 1)[:, own])
+        inner = roots_in_unit(self.numerators[order][:, own])
         edge = np.zeros((1, *inner.shape[1:]))
         places = np.concatenate([edge, inner, edge + 1.0])
         speed = derived(self._time[:, own], 1)
-        return places, in_time(self.numerator(order)[:, own], speed, order, places)
+        return places, in_time(self.numerators[order - 1][:, own], speed, order, places)
 
     def derivative(self, segment: int, joint: int | slice, order: int) -> Array:
         """Refuse: a derivative in time is not a polynomial.
@@ -170,7 +164,7 @@ class ClockedTrajectory(Trajectory):
         if order == 0:
             return super().values(piece, joint, 0, places)
         speed = derived(self.clock[piece], 1)
-        return in_time(self.numerator(order)[:, piece, joint], speed, order, places)
+        return in_time(self.numerators[order - 1][:, piece, joint], speed, order, places)
 
     def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
         """As `Trajectory.times`, by the clock."""
@@ -181,7 +175,7 @@ class ClockedTrajectory(Trajectory):
         if order == 0:
             return super().level(piece, joint, order, value)
         speed = np.polynomial.polynomial.polypow(derived(self.clock[piece], 1), 2 * order - 1)
-        found = self.numerator(order)[:, piece, joint]
+        found = self.numerators[order - 1][:, piece, joint]
         return np.asarray(np.polynomial.polynomial.polysub(found, value * speed))
 
     def steps(self, order: int) -> tuple[Array, Array, Array]:
@@ -191,7 +185,7 @@ class ClockedTrajectory(Trajectory):
         q, speed = self.derivatives(0), derived(self._time, 1)
         edges = np.stack([np.zeros(q.shape[1:]), np.ones(q.shape[1:])])
         terms = numerators(np.abs(q), np.abs(self._time), order, 1)[-1]
-        values = in_time(self.numerator(order), speed, order, edges)
+        values = in_time(self.numerators[order - 1], speed, order, edges)
         sizes = in_time(terms, speed, order, edges)
         return values[1, :-1], values[0, 1:], sizes[1, :-1] + sizes[0, 1:]
 
@@ -215,21 +209,14 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
     """Trajectory of q(e) and t(e), with a bound on the error of every extremum.
 
     Both are combinations, coefficients in e of way-points and of durations, in extended precision.
-    """
-    scaled, error = combined(q, waypoints)
-    clock, clock_error = (one[:, :4, 0] for one in combined(t, durations[:, None]))
-    found = with_clock(scaled, clock)
-    return Enclosed(found, _errors(found, error, clock_error))
-
-
-def with_clock(scaled: Array, clock: Array) -> ClockedTrajectory:
-    """Trajectory of q(e) and t(e), from coefficients (pieces, 10, joints) and (pieces, 4).
 
     Raises
     ------
     CurveError
         If the clock does not run forwards everywhere.
     """
+    scaled, error = combined(q, waypoints)
+    clock, clock_error = (one[:, :4, 0] for one in combined(t, durations[:, None]))
     speeds, places = _least_speed(derived(clock.T, 1))
     k = int(speeds.argmin())
     if not speeds[k] > 0:
@@ -240,7 +227,8 @@ def with_clock(scaled: Array, clock: Array) -> ClockedTrajectory:
             float(speeds[k]),
         )
     lengths = np.diff(np.append(clock[:, 0], clock[-1].sum()))
-    return ClockedTrajectory(lengths, scaled, (3,) * len(clock), clock)
+    found = ClockedTrajectory(lengths, scaled, (3,) * len(clock), clock)
+    return Enclosed(found, _errors(found, error, clock_error))
 
 
 def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array:

@@ -14,17 +14,8 @@ from ..arrays import Array
 from ..errors import TrajgapError
 from .kind import STEP, Asked, Curve, Enclosed, Shape, Timing, as_batch, masked
 from .peak import Extremum
-from .polynomials import MAX_COEFFICIENTS
 from .stretched import StretchedCurve
-from .timed import (
-    clocked_reach,
-    combined,
-    enclosed_with_clock,
-    runs_forwards,
-    values_at,
-    with_clock,
-)
-from .trajectory import Trajectory
+from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, values_at
 
 _SIXTH = Fraction(1, 6)
 """Weight of either neighbour in (2); exact, so the matrices are."""
@@ -190,12 +181,6 @@ class TimedUniformBSpline(UniformBSpline):
         """From exact rational matrices; a `CurveError` where time would run backwards."""
         q, t = shape_matrix(self.waypoints), self.clock
         return enclosed_with_clock(q, t, waypoints, durations)
-
-    def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
-        """The trajectory of `enclosed`, without the bound."""
-        scaled = np.zeros((self.segments, MAX_COEFFICIENTS, waypoints.shape[1]))
-        scaled[:, :4] = shape_matrix(self.waypoints) @ waypoints
-        return with_clock(scaled, np.asarray(self.clock @ durations, dtype=np.float64))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """Coefficients of q(e), positions counted from the first way-point."""
