@@ -87,10 +87,9 @@ class Centre:
         # x⁰ and X by joint.
         load = self.load[:2, :, None] * task.steps.T[:, :, None]
         self.x0 = self._solve(self._placed(load[0]).sum(axis=2))
-        moved = self.parted(self.x0) @ self.blocks[1]
-        self.rise = self._placed(load[1] - np.swapaxes(moved, 1, 2))
-        flat = self.rise.reshape(self.size, -1, self.rise.shape[-1])
-        self.slope = self._solve(flat).reshape(self.rise.shape)
+        moved = np.swapaxes(self.parted(self.x0) @ self.blocks[1], 1, 2)
+        self.rise = rise = self._placed(load[1] - moved)
+        self.slope = self._solve(rise.reshape(self.size, -1, rise.shape[-1])).reshape(rise.shape)
 
     def _parts(self) -> None:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
@@ -235,7 +234,8 @@ class Centre:
             leaf, at = np.unique(every[mine], return_inverse=True)
             own, each = self.pick(leaf, joint), shape[mine, 1:]
             phi = np.zeros((2, own.size, n, 4))
-            np.add.at(phi, (slice(None), at, k[mine]), np.stack([each, np.abs(each)]))
+            np.add.at(phi[0], (at, k[mine]), each)
+            np.add.at(phi[1], (at, k[mine]), np.abs(each))
             parts = own._joint(task.steps[:, joint], phi, middle[leaf], spread[leaf])
             for name, part in parts.items():
                 sums[name][leaf] += part
@@ -332,7 +332,7 @@ class Centre:
 
 def _length(vectors: Array) -> Array:
     """Norms along the last axis."""
-    return np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
 
 
 def _taylor(factors: Array, exponents: Rows, powers: Array) -> Array:
@@ -367,7 +367,7 @@ class Part:
     @property
     def most(self) -> Array:
         """The largest norm."""
-        return self.first + self.second + self.later
+        return np.asarray(self.first + self.second + self.later)
 
     def beyond(self, other: Part) -> Array:
         """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders.
