@@ -90,11 +90,10 @@ class Boxes(ProofKind[Sides]):
         """Part of a box whose durations can add up to the total, with something to spare."""
         total, below, above = self.most, sum(low), sum(high)
         slack = SLACK * (above + total)
+        least, sides = low, list(zip(low, high, strict=True))
         if self.stretches:
-            least = [max(a, total - (above - b) - slack) for a, b in zip(low, high, strict=True)]
-        else:
-            least = low
-        most = [min(b, total - (below - a) + slack) for a, b in zip(low, high, strict=True)]
+            least = [x if (x := total - (above - b) - slack) > a else a for a, b in sides]
+        most = [x if (x := total - (below - a) + slack) < b else b for a, b in sides]
         return least, most
 
     @staticmethod
@@ -168,10 +167,9 @@ def shapes(rows: Rows, powers: int, places: int) -> Array:
 def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:
     """At most gᵀδ + ½ δᵀBδ for all |δ_k| ≤ e_k, box by box.
 
-    In x = δ/e: b x_k x_m ≥ −½|b|(x_k² + x_m²), so products of two take from the squares. Where
-    b s_k s_m > 0 at the corner s of the least linear part, b x_k x_m ≥ |b|(s_k x_k + s_m x_m − 1)
-    too: half the sum of both, or a share of it, lends |b| to the least value, as long as that stays
-    in this corner.
+    In x = δ/e, b x_k x_m ≥ −½|b|(x_k² + x_m²): products of two take from the squares. If they are
+    positive at the corner s of the least linear part, |b|(s_k x_k + s_m x_m − 1) is below them too.
+    A share of it instead raises the least value, as long as that is taken in this corner.
     """
     each = np.arange(e.shape[1])
     bend = bend * e[:, :, None] * e[:, None, :]

@@ -76,15 +76,22 @@ class QuinticSpline(Boxes):
 
     def leaf(self, box: Sides, data: list[Any]) -> None:
         """[window, τ], or as any kind has it."""
-        if len(data) != 2:
-            super().leaf(box, data)
-            return
-        which = whole(data[0], 0, len(self.windows[0]) - 1)
-        exact = number(data[1])
-        usual = exact == 0 or ranges.within(abs(exact), ranges.LEAST_TAU)
-        need(usual, "a window's tau is of unusual size")
-        least = self.over_windows(np.array(which), np.array(float(exact)), *map(np.array, box))
-        need(bool(least > 0.0), "it is not proved by its window")
+        if len(data) == 2:
+            which, exact = whole(data[0], 0, len(self.windows[0]) - 1), number(data[1])
+            usual = exact == 0 or ranges.within(abs(exact), ranges.LEAST_TAU)
+            need(usual, "a window's tau is of unusual size")
+            data = [which, float(exact)]
+        super().leaf(box, data)
+
+    def end(self) -> None:
+        """Judge the leaves with windows that wait, then those with limits."""
+        waiting, self._waiting = self._waiting, [x for x in self._waiting if len(x[1]) != 2]
+        windows = [(box, *data) for box, data in waiting if len(data) == 2]
+        if windows:
+            boxes, which, tau = map(np.array, zip(*windows, strict=True))
+            least = self.over_windows(which, tau, boxes[:, 0], boxes[:, 1])
+            need(bool((least > 0.0).all()), "it is not proved by its window")
+        super().end()
 
     def _terms(self, windows: list[list[int]]) -> tuple[Array, Array, Array]:
         """p, q and d of windows Σ (p_k/h_k − q_k h_k) − d ≤ 0: Σ cΔ/h − A Σ m h − V Σ|c + ψ' h|."""

@@ -78,26 +78,24 @@ class Centre:
             bool((low > BRIEFEST).all() and (low <= high).all()),
             "a leaf that is too wide is not proved",
         )
-        self.task, self.size = task, len(low)
-        self.n, self.joints = task.steps.shape
+        self.task, self.size, self.n = task, len(low), len(task.steps)
         ends = 1.0 / high, 1.0 / low
         self.r = 0.5 * (ends[0] + ends[1])
         self.e = 0.5 * (ends[1] - ends[0]) + 4.0 * SLACK * ends[1]
         need(bool((self.e < WIDEST * self.r).all()), "a leaf that is too wide is not proved")
         self._parts()
         # x⁰ and X by joint.
-        steps = task.steps[:, :, None]
-        self.x0 = self._solve(self._joined(self.load[0, :, None] * np.swapaxes(steps, 0, 1)))
-        moved = self._parted(self.x0) @ self.blocks[1]
-        self.rise = self._placed(np.swapaxes(self.load[1, :, :, None] * steps - moved, 1, 2))
-        flat = self.rise.reshape(self.size, -1, self.rise.shape[-1])
-        self.slope = self._solve(flat).reshape(self.rise.shape)
+        load = self.load[:2, :, None] * task.steps.T[:, :, None]
+        self.x0 = self._solve(self._placed(load[0]).sum(axis=2))
+        moved = np.swapaxes(self.parted(self.x0) @ self.blocks[1], 1, 2)
+        self.rise = rise = self._placed(load[1] - moved)
+        self.slope = self._solve(rise.reshape(self.size, -1, rise.shape[-1])).reshape(rise.shape)
 
     def _parts(self) -> None:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
         # Unknowns of v₀, v₁, a₀ and a₁ of each segment; the last place is for those that are 0.
         way, order = np.arange(self.n)[:, None] + [0, 1, 0, 1], np.array([0, 0, 1, 1])
-        self.places = np.where(way % self.n, 2 * (way - 1) + order, 2 * self.n - 2)
+        self.places = list(np.where(way % self.n, 2 * (way - 1) + order, 2 * self.n - 2))
         powers, top = (x[..., None] ** np.arange(5) for x in (self.r, self.r + self.e))
         self.blocks = _taylor(STIFFNESS, POWERS, powers)[:4]
         self.m0 = self._assembled(self.blocks[0])
@@ -109,7 +107,7 @@ class Centre:
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
 
-    def _parted(self, vectors: Array) -> Array:
+    def parted(self, vectors: Array) -> Array:
         """What vectors (leaf, vector, unknown) say of each segment: (leaf, segment, vector, 4)."""
         found = np.zeros((*vectors.shape[:-1], vectors.shape[-1] + 1))
         found[..., :-1] = vectors
@@ -120,13 +118,6 @@ class Centre:
         found = np.zeros((*own.shape[:-1], 2 * self.n - 1))
         for k, i in enumerate(self.places):
             found[..., k, i] = own[..., k, :]
-        return found[..., :-1]
-
-    def _joined(self, own: Array) -> Array:
-        """The same, all segments together: (..., unknown)."""
-        found = np.zeros((*own.shape[:-2], 2 * self.n - 1))
-        for k, i in enumerate(self.places):
-            found[..., i] += own[..., k, :]
         return found[..., :-1]
 
     def _assembled(self, blocks: Array) -> Array:
@@ -140,22 +131,12 @@ class Centre:
         """Some of the boxes, and of one joint."""
         own = copy(self)
         for name, value in vars(self).items():
-            if name in ("blocks", "load"):
-                setattr(own, name, value[:, leaf])
-            elif name in ("x0", "rise", "slope"):
-                setattr(own, name, value[:, joint][leaf])
-            elif isinstance(value, np.ndarray) and name != "places":
-                setattr(own, name, value[leaf])
+            if isinstance(value, np.ndarray):
+                value = value[:, joint] if name in ("x0", "rise", "slope") else value
+                ordered = name in ("blocks", "load", "turned", "pushed")
+                setattr(own, name, value[:, leaf] if ordered else value[leaf])
         own.size = len(own.r)
         return own
-
-    def _frames(self) -> None:
-        """R, R M_k,o for o ≥ 1, and R b_k,o for o ≥ 2, by what is said of each segment."""
-        root = np.swapaxes(self._parted(self.root), 2, 3)
-        turned = np.moveaxis(self.blocks[1:] @ root, 0, 3)
-        self.turned = turned.reshape(*turned.shape[:3], -1)
-        self.pushed = np.moveaxis(self.load[2:], 0, 2) @ root
-        self.sides = root
 
     def _framed(self, matrix: Array) -> tuple[Array, Array]:
         """R A Rᵀ, and the largest row sum of its rounding."""
@@ -194,8 +175,7 @@ class Centre:
         return 1.0 / most, 1.0 / least
 
     def _solve(self, right: Array) -> Array:
-        half = right @ np.swapaxes(self.root, 1, 2)
-        return np.asarray(half @ self.root)
+        return np.asarray(right @ np.swapaxes(self.root, 1, 2) @ self.root)
 
     def least(self, tau: Array, rows: Rows, weights: Array) -> Array:
         """Lower bound of each leaf's weighted sum; −inf if there is none.
@@ -216,14 +196,12 @@ class Centre:
         k, j, order = used[:, 0], used[:, 1], used[:, 2]
         # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
         shape = (shapes(used, 6, QUINTIC_PLACES) @ task.basis.T) * weight[:, None]
-        cap = task.cap(used) * weight
-        bent = np.zeros((self.size, n))
+        bent, moved = np.zeros((2, self.size, n))
         np.add.at(bent, (every, k), shape[:, 0] * task.steps[k, j])
-        against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
-        np.add.at(against, (np.array([0, 1, 0, 2])[order], every, k), cap)
-        top, bottom = r + e, r - e
-        moved = np.zeros((self.size, n))
         np.add.at(moved, (every, k), np.abs(shape[:, 0] * task.steps[k, j]))
+        against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
+        np.add.at(against, (np.array([0, 1, 0, 2])[order], every, k), task.cap(used) * weight)
+        top, bottom = r + e, r - e
         size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
         size += np.abs(tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
@@ -245,20 +223,19 @@ class Centre:
             "size": size,
             "blame": np.zeros((self.size, n)),
         }
-        self._frames()
+        # R, R M_k,o for o ≥ 1, and R b_k,o for o ≥ 2, by what is said of each segment.
+        self.sides = np.swapaxes(self.parted(self.root), 2, 3)
+        self.turned = self.blocks[1:] @ self.sides
+        self.pushed = (self.load[2:, :, :, None] @ self.sides)[:, :, :, 0]
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        speeds = np.array([1.0, 1.0, 0.0, 0.0])
-        for joint in range(self.joints):
+        for joint in np.unique(j).tolist():
             mine = j == joint
-            if not mine.any():
-                continue
             leaf, at = np.unique(every[mine], return_inverse=True)
             own, each = self.pick(leaf, joint), shape[mine, 1:]
             phi = np.zeros((2, own.size, n, 4))
             np.add.at(phi[0], (at, k[mine]), each)
             np.add.at(phi[1], (at, k[mine]), np.abs(each))
-            phi = np.stack([phi * speeds, phi * (1.0 - speeds)])
             parts = own._joint(task.steps[:, joint], phi, middle[leaf], spread[leaf])
             for name, part in parts.items():
                 sums[name][leaf] += part
@@ -276,19 +253,16 @@ class Centre:
         """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + πᵀM⁻¹ρ, x̃ = x0 + Σ X_m δ_m.
 
         With π = φ − M μ and ρ = b − M x̃, πᵀM⁻¹ρ is ½(c + s)·(Rπ)ᵀ(Rρ) and what is at most
-        ½(c − s)·‖Rπ‖‖Rρ‖. ``phi`` are those of velocities times r and of accelerations; each, then
-        in absolute values. ``middle`` and ``spread`` are ½(c + s) and ½(c − s).
+        ½(c − s)·‖Rπ‖‖Rρ‖. ``phi`` are those of velocities times r and of accelerations, then in
+        absolute values. ``middle`` and ``spread`` are ½(c + s) and ½(c − s).
         """
-        n, r, e, (speed, bend) = self.n, self.r, self.e, phi
+        n, r, e, speed = self.n, self.r, self.e, phi[0] * [1, 1, 0, 0]
         x0, rise, slope = self.x0, self.rise, self.slope
-        full = bend[0] + speed[0] * r[:, :, None]
-        high = self._joined(bend[1] + speed[1] * (r + e)[:, :, None])
-        right = self._joined(full)
+        full = phi * np.stack([r, r + e])[..., None] ** [1, 1, 0, 0]
+        right, high = self._placed(full).sum(axis=2)
         mu = self._solve(right[:, None])
-        own = self._parted(np.concatenate([slope, x0[:, None], mu], axis=1))
-        on_slope, on_x0, on_mu = np.split(
-            (own @ self.turned).reshape(self.size, n, n + 2, 3, -1), [n, n + 1], axis=2
-        )
+        own = self.parted(np.concatenate([slope, x0[:, None], mu], axis=1))
+        turned = own @ self.turned
         of_slope, of_x0, of_mu, mu = own[:, :, :n], own[:, :, n], own[:, :, n + 1], mu[:, 0]
         wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
         reach = np.einsum("lki,k->li", self.load_top, np.abs(step))
@@ -296,42 +270,45 @@ class Centre:
         # π: constant, then Taylor parts of each segment.
         rest = right - np.einsum("lij,lj->li", self.m0, mu)
         weak = high + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
-        loose = np.abs(rest) + ROUND * weak
-        swift = (speed[0][:, :, None] @ self.sides)[:, :, 0]
+        outer, loose = np.abs(self.root), np.abs(rest) + ROUND * weak
+        swift = (speed[:, :, None] @ self.sides)[:, :, 0]
         adjoint = Part(
-            (swift - on_mu[:, :, 0, 0]) * e[:, :, None],
-            on_mu[:, :, 0, 1] * -(e**2)[:, :, None],
-            (_length(on_mu[:, :, 0, 2]) * e**3).sum(axis=1) + self._loosely(loose),
+            (swift - turned[0, :, :, -1]) * e[:, :, None],
+            turned[1, :, :, -1] * -(e**2)[:, :, None],
+            (_length(turned[2, :, :, -1]) * e**3).sum(axis=1)
+            + _length(np.einsum("lij,lj->li", outer, loose)),
         )
         # ρ: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
-        zero = self._joined(self.load[0] * step[:, None])
+        zero = self._placed(self.load[0] * step[:, None]).sum(axis=1)
         zero -= np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - slope @ self.m0
         loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
-        each, (k, m) = np.arange(n), _pairs(n)
-        alone = self.pushed * step[:, None, None]
-        alone[:, :, :2] -= on_x0[:, :, 0, 1:]
-        flat = np.moveaxis(on_slope, 3, 0).reshape(3, self.size, n * n, -1)
-        square = -flat[0].take(n * k + m, axis=1)
-        square[:, n:] -= flat[0].take((n * m + k)[n:], axis=1)
-        square[:, :n] += alone[:, :, 0]
-        third, fourth = -flat[1:]
-        third[:, :: n + 1] += alone[:, :, 1]
-        fourth[:, :: n + 1] += alone[:, :, 2]
+        each, (k, m) = np.arange(n), np.triu_indices(n, 1)
+        k, m = np.append(each, k), np.append(each, m)
+        flat = turned[0].reshape(self.size, n * (n + 2), -1)
+        square = -flat.take((n + 2) * k + m, axis=1)
+        square[:, n:] -= flat.take(((n + 2) * m + k)[n:], axis=1)
+        third, fourth = (-turned[1:, :, :, :n]).reshape(2, self.size, n * n, -1)
+        alone = self.pushed * step[:, None]
+        alone[:2] -= turned[1:, :, :, n]
+        square[:, :n] += alone[0]
+        third[:, :: n + 1] += alone[1]
+        fourth[:, :: n + 1] += alone[2]
         wide_3 = e[:, :, None] ** 2 * e[:, None]
         flat_3 = wide_3.reshape(self.size, -1)
         residual = Part(
             square * (e.take(k, axis=1) * e.take(m, axis=1))[:, :, None],
             third * flat_3[:, :, None],
-            (_length(fourth) * flat_3 * e.repeat(n, axis=1)).sum(axis=1) + self._loosely(loose),
+            (_length(fourth) * flat_3 * e.repeat(n, axis=1)).sum(axis=1)
+            + _length(np.einsum("lij,lj->li", outer, loose)),
         )
         moved = (self.blocks @ of_mu[..., None])[..., 0]
         curve = np.einsum("olka,lka->lok", self.load, of_mu) * step
         curve[:, :4] -= np.einsum("olka,lka->lok", moved, of_x0)
-        curve[:, 0] += np.einsum("lka,lka->lk", full, of_x0)
-        curve[:, 1] += np.einsum("lka,lka->lk", speed[0], of_x0)
-        moved[1] -= speed[0]
+        curve[:, 0] += np.einsum("lka,lka->lk", full[0], of_x0)
+        curve[:, 1] += np.einsum("lka,lka->lk", speed, of_x0)
+        moved[1] -= speed
         mixed = -(of_slope @ moved[1:, ..., None])[..., 0]
         cubes = np.zeros((self.size, n, n, n))
         both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2)
@@ -352,14 +329,10 @@ class Centre:
             "blame": spread[:, None] * blame,
         }
 
-    def _loosely(self, sizes: Array) -> Array:
-        """The largest ‖R v‖ of vectors v of these sizes."""
-        return _length(np.einsum("lij,lj->li", np.abs(self.root), sizes))
-
 
 def _length(vectors: Array) -> Array:
     """Norms along the last axis."""
-    return np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
 
 
 def _taylor(factors: Array, exponents: Rows, powers: Array) -> Array:
@@ -369,12 +342,6 @@ def _taylor(factors: Array, exponents: Rows, powers: Array) -> Array:
         for o in range(powers.shape[-1])
     ]
     return np.stack(found)
-
-
-def _pairs(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Numbers k and m of all pairs: those of one number with itself, then k < m."""
-    each, (k, m) = np.arange(n), np.triu_indices(n, 1)
-    return np.concatenate([each, k]), np.concatenate([each, m])
 
 
 class Part:
@@ -400,7 +367,7 @@ class Part:
     @property
     def most(self) -> Array:
         """The largest norm."""
-        return self.first + self.second + self.later
+        return np.asarray(self.first + self.second + self.later)
 
     def beyond(self, other: Part) -> Array:
         """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders.

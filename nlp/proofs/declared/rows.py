@@ -46,12 +46,16 @@ class NearLimits:
         Limits of orders 0 to 3 on the lower and the upper side; inf if there is none.
     places : int
         Of a piece, in which places are counted.
+    parts : int, optional
+        Of a piece, between whose ends peaks are looked for.
     """
 
-    def __init__(self, segments: int, powers: int, caps: Array, places: int) -> None:
-        self.places, self._caps = places, caps
+    def __init__(
+        self, segments: int, powers: int, caps: Array, places: int, parts: int = _GRID
+    ) -> None:
+        self.places, self.parts, self._caps = places, parts, caps
         self.count = 4 * (segments + 1) + 8
-        self.grid = np.rint(np.arange(_GRID + 1) * (places / _GRID)).astype(np.int64)
+        self.grid = np.rint(np.arange(parts + 1) * (places / parts)).astype(np.int64)
         side, joint, order = np.nonzero(np.isfinite(caps))
         limits = np.stack([joint, order, 2 * side - 1], axis=1)
         limits = limits[np.lexsort((side, order, joint))]
@@ -62,8 +66,8 @@ class NearLimits:
         self._factors = np.ones((6, powers))
         for r in range(5):
             self._factors[r + 1] = self._factors[r] * np.maximum(np.arange(powers) - r, 0)
-        each = np.repeat(self.rows[:, None], _GRID + 1, axis=1)
-        at = np.broadcast_to(self.grid[:, None], (len(self.rows), _GRID + 1, 1))
+        each = np.repeat(self.rows[:, None], parts + 1, axis=1)
+        at = np.broadcast_to(self.grid[:, None], (len(self.rows), parts + 1, 1))
         self.shapes = self._shapes(np.concatenate([each, at], axis=2))
 
     def _cap(self, rows: NDArray[np.int64]) -> Array:
@@ -91,24 +95,25 @@ class NearLimits:
             Its change with the logarithm of each duration, which is the first axis.
         """
         segment, joint, order, _ = self.rows.T
+        size = self._cap(self.rows) * (h[:, :, None] ** np.arange(4))[:, segment, order]
         own = pieces[:, segment, :, joint]  # (row, box, power)
-        found = np.swapaxes(own @ np.swapaxes(self.shapes, 1, 2), 0, 1)
-        size = (self._cap(self.rows) * h[:, segment] ** order)[:, :, None]
-        found = np.where(order[:, None] > 0, found / size, found - size + 1)
-        peak = np.full(found.shape, True)
-        peak[:, :, 1:] &= found[:, :, 1:] > found[:, :, :-1]
-        peak[:, :, :-1] &= found[:, :, :-1] >= found[:, :, 1:]
-        flat = np.where(peak, found, -np.inf).reshape(len(h), -1)
+        found, far = own @ np.swapaxes(self.shapes, 1, 2), order == 0
+        found /= np.where(far, 1.0, size).T[:, :, None]
+        found[far] += 1.0 - size.T[far][:, :, None]
+        rises, no = found[:, :, 1:] > found[:, :, :-1], np.full((*found.shape[:2], 1), False)
+        beside = np.concatenate([no, ~rises], axis=2) | np.concatenate([rises, no], axis=2)
+        found[beside] = -np.inf  # all but peaks
+        flat = np.swapaxes(found, 0, 1).reshape(len(h), -1)
         count = min(self.count, flat.shape[1])
         best = np.argpartition(-flat, count - 1, axis=1)[:, :count]
         box = np.arange(len(h))[:, None]
         there = np.isfinite(flat[box, best])
-        which, spot = best // (_GRID + 1), self.grid[best % (_GRID + 1)]
+        which, spot = best // len(self.grid), self.grid[best % len(self.grid)]
         rows = np.concatenate([self.rows[which], spot[:, :, None]], axis=2)
         coefficients = own[which, box]
         rows[..., 4] = self._peaks(rows, coefficients)
         shape, high = self._shapes(rows), rows[..., 2] > 0
-        size = size[box, which, 0]
+        size = size[box, which]
         value = (shape * coefficients).sum(axis=2)
         value = np.where(high, value / size - 1.0, value - size)
         shape *= np.where(high, 1.0 / size, 1.0)[:, :, None]
@@ -120,7 +125,7 @@ class NearLimits:
     def _peaks(self, rows: NDArray[np.int64], coefficients: Array) -> NDArray[np.int64]:
         """Places of the peaks next to those of the grid."""
         first, order = rows[..., 4] / self.places, rows[..., 2]
-        wide = 1.0 / _GRID
+        wide = 1.0 / self.parts
         low, high = np.maximum(first - wide, 0.0), np.minimum(first + wide, 1.0)
         signed = coefficients * rows[..., 3, None]
         rise, bend = signed * self._factors[order + 1], signed * self._factors[order + 2]

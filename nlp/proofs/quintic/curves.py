@@ -14,6 +14,10 @@ from .windows import excluding_windows
 
 _SPARE = 1e-9
 """Part of the limits by which a leaf must exceed them, so another evaluation agrees."""
+_PARTS = 8
+"""Of a segment: twice as many as its velocity has peaks; with 12 as many boxes were left."""
+_NODAL = np.array([1, 1, 2, 2])
+"""Powers of its duration with the velocities and accelerations at the ends of a segment."""
 _SLIGHT = 1e-5
 """Weights below it are left out: all sum up to 1, and short leaves are cheap."""
 
@@ -27,27 +31,23 @@ class QuinticCurves(Curves):
         limits = kind.task.limits
         caps = np.full((2, len(limits), 4), np.inf)
         caps[:, :, 1:] = limits
-        super().__init__(kind, NearLimits(len(kind.task.steps), 6, caps, QUINTIC_PLACES))
+        super().__init__(kind, NearLimits(len(kind.task.steps), 6, caps, QUINTIC_PLACES, _PARTS))
 
     def middle(self, sides: Array) -> Middle:
         """At the harmonic means, where the verifier has its centres."""
         centre = self.kind.centre(sides)
-        h, (n, joints) = 1.0 / centre.r, self.kind.task.steps.shape
-        nodes = np.zeros((len(h), 1 + n, joints, n + 1, 2))
+        h, (n, joints), basis = 1.0 / centre.r, self.kind.task.steps.shape, self.kind.task.basis
         # The spline itself, then its change with each 1/h times −1/h.
-        nodes[:, 0, :, 1:-1] = centre.x0.reshape(len(h), joints, n - 1, 2)
-        slope = np.swapaxes(centre.slope, 1, 2).reshape(len(h), n, joints, n - 1, 2)
-        nodes[:, 1:, :, 1:-1] = -slope / h[:, :, None, None, None]
-        size = h[:, None, None, :, None] ** np.array([1, 2])
-        ends = np.stack([nodes[..., :-1, :] * size, nodes[..., 1:, :] * size], axis=-1)
-        local = np.zeros((len(h), 1 + n, joints, n, 5))
-        local[:, 0, ..., 0] = self.kind.task.steps.T
-        local[..., 1:] = ends.reshape(*ends.shape[:-2], 4)
-        each = np.arange(n)
-        own = local[:, 0] * np.array([0, 1, 1, 2, 2])
-        local[:, 1 + each, :, each] += np.moveaxis(own, 2, 0)
-        found = np.moveaxis(local @ self.kind.task.basis, 2, -1)
-        return Middle(centre, h, centre.e * h, found[:, 0], found[:, 1:])
+        slope = -centre.slope / h[:, None, :, None]
+        nodes = np.concatenate([centre.x0[:, :, None], slope], axis=2)
+        own = centre.parted(nodes.reshape(len(h), joints * (1 + n), -1))
+        own = own * (h[:, :, None] ** _NODAL)[:, :, None]
+        own, each = own.reshape(len(h), n, joints, 1 + n, 4), np.arange(n)
+        own[:, each, :, 1 + each] += np.swapaxes(own[:, :, :, 0], 0, 1) * _NODAL
+        found = own @ basis[1:]
+        found[:, :, :, 0] += self.kind.task.steps[:, :, None] * basis[0]
+        pieces, moved = np.swapaxes(found[:, :, :, 0], 2, 3), found[:, :, :, 1:]
+        return Middle(centre, h, centre.e * h, pieces, moved.transpose(0, 3, 1, 4, 2))
 
     def without_limits(self, low: Array, high: Array) -> list[Leaf | None]:
         """By a window: its number, τ, and a mark that tells it from other leaves."""

@@ -27,6 +27,8 @@ _TOGETHER = 12
 """Linear programs in one: with more the solver is slower, with fewer what stands around it."""
 _TRIED = 4
 """Windows that are tried on a box with multipliers of the total: the nearest to excluding it."""
+_FAR = 0.25
+"""Share of what it weighs by which a window may miss a box without τ: with τ few did by more."""
 _TURNS = (1.0, 0.7)
 """Shares of the multiplier at which a term is least at the upper end of its duration."""
 
@@ -156,24 +158,26 @@ def windows(
 
 def excluding_windows(kind: Any, low: Array, high: Array) -> tuple[NDArray[np.int64], Array]:
     """For each box a window of its verifier that excludes it, or −1, and its τ."""
-    (p, pay, fixed), boxes = kind.windows, np.arange(len(low))
+    p, pay, fixed = kind.windows
     which, taus = np.full(len(low), -1), np.zeros(len(low))
     if not len(fixed):
         return which, taus
     # How far each is from excluding a box, relative to what it weighs there.
     weight = high @ pay.T + fixed
     near = ((1.0 / high) @ p.T - weight) / weight
-    count = min(_TRIED, len(fixed))
+    tried = np.flatnonzero(near.max(axis=1) > -_FAR)
+    low, high, near = low[tried], high[tried], near[tried]
+    count, boxes = min(_TRIED, len(fixed)), np.arange(len(tried))
     best = np.argpartition(-near, count - 1, axis=1)[:, :count]
     # d/dh (p/h + (τ − q)h) = 0 at the upper end of one duration.
     turned = pay[best] + p[best] / (high * high)[:, None]
-    tried = [np.zeros((*best.shape, 1)), *(share * turned for share in _TURNS)]
-    tau = np.maximum(0.0, np.concatenate(tried, axis=2))
+    turns = [np.zeros((*best.shape, 1)), *(share * turned for share in _TURNS)]
+    tau = np.maximum(0.0, np.concatenate(turns, axis=2))
     sides = (np.broadcast_to(x[:, None, None], (*tau.shape, x.shape[1])) for x in (low, high))
     least = kind.over_windows(np.broadcast_to(best[:, :, None], tau.shape), tau, *sides)
-    flat = np.nan_to_num(least, nan=-np.inf).reshape(len(low), -1)
+    flat = np.nan_to_num(least, nan=-np.inf).reshape(len(low), tau.shape[1] * tau.shape[2])
     top = flat.argmax(axis=1)
     excluded = flat[boxes, top] > 0.0
-    which[excluded] = best[boxes, top // tau.shape[2]][excluded]
-    taus[excluded] = tau.reshape(len(low), -1)[boxes, top][excluded]
+    which[tried[excluded]] = best[boxes, top // tau.shape[2]][excluded]
+    taus[tried[excluded]] = tau.reshape(flat.shape)[boxes, top][excluded]
     return which, taus
