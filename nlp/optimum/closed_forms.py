@@ -103,7 +103,7 @@ def joined(problem: Problem) -> Array | str | None:
     low, high = _box(problem)
     for k, reason in enumerate(wide.reasons):
         if not wide.low[k] <= wide.high[k] or np.isposinf(wide.low[k]):
-            return f"the {reason} jumps at way-point {k + 1} for any durations"
+            return f"the {reason} jumps at way-point {k + 2} for any durations"
     slack = float(np.log(SURE))
     late = np.flatnonzero(_least(low, wide) > high + slack)
     if late.size:

@@ -52,7 +52,7 @@ def _outside_range(problem: Problem) -> str | None:
     outside = np.argwhere((problem.waypoints < low) | (problem.waypoints > high))
     if outside.size:
         w, j = outside[0]
-        return f"way-point {w} of joint {problem.joints[j]} lies outside its position limits"
+        return f"way-point {w + 1} of joint {problem.joints[j]} lies outside its position limits"
     return None
 
 
@@ -94,7 +94,7 @@ def _room(problem: Problem) -> tuple[Array, Array]:
 def _spans(problem: Problem) -> Iterator[tuple[int, Array, Array, Callable[[int], str]]]:
     """Orders of limits, ways that they bound, the time that there is for each, and its words."""
     q, (_, high) = problem.waypoints, _room(problem)
-    yield 1, np.diff(q, axis=0), high, lambda w: f"between way-points {w} and {w + 1}"
+    yield 1, np.diff(q, axis=0), high, lambda w: f"between way-points {w + 1} and {w + 2}"
     for last, end in enumerate(problem.curve.ends):
         still = {order for order, value in end if value == 0.0}
         for order in (2, 3):
@@ -106,14 +106,14 @@ def _spans(problem: Problem) -> Iterator[tuple[int, Array, Array, Callable[[int]
                     order,
                     q[-2::-1] - q[-1],
                     room,
-                    lambda w: f"from way-point {len(q) - 2 - w} to rest",
+                    lambda w: f"from way-point {len(q) - 1 - w} to rest",
                 )
             else:
                 yield (
                     order,
                     q[1:] - q[0],
                     np.cumsum(high),
-                    lambda w: f"from rest to way-point {w + 1}",
+                    lambda w: f"from rest to way-point {w + 2}",
                 )
 
 
@@ -158,7 +158,7 @@ def _too_sharp_a_turn(problem: Problem) -> str | None:
     return (
         f"joint {problem.joints[j]} needs an acceleration of {needed[w, j]:.6g} "
         f"{'m' if problem.linear[j] else 'rad'}/s² near "
-        f"way-point {w + 1} within the duration bounds; its limit is "
+        f"way-point {w + 2} within the duration bounds; its limit is "
         f"{problem.limits.acceleration[j]:.6g}"
     )
 

@@ -282,6 +282,6 @@ def test_a_slide_needs_metres_per_second_squared() -> None:
         duration_upper=0.5,
         linear=(True,),
     )
-    assert "needs an acceleration of 8 m/s² near way-point 1" in str(solve(problem).why)
+    assert "needs an acceleration of 8 m/s² near way-point 2" in str(solve(problem).why)
     with pytest.raises(TrajgapError, match="linear: 2 entries for 1 joints"):
         replace(problem, linear=(True, False))

@@ -142,18 +142,21 @@ def test_known_motions_of_a_wrong_shape_are_refused() -> None:
         ({"limits": Limits([1.0, 2.0], [3.0, 0.0])}, "joint 2 moves, but its acceleration limit"),
         ({"duration_upper": 0.2}, "needs at least"),
         ({"limits": Limits([[-0.5, 1.0], [-2, 1.1]]), "duration_upper": 0.1}, "velocity limit"),
-        ({"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0, joints=2)}, "outside its position limits"),
+        (
+            {"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0, joints=2)},
+            "way-point 4 of joint 1 lies outside",
+        ),
         (
             {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [0.6, 9.0, 9.0]},
-            "joint 2 needs at least 0.730296 s from rest to way-point 1 at its acceleration",
+            "joint 2 needs at least 0.730296 s from rest to way-point 2 at its acceleration",
         ),
         (
             {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [9.0, 9.0, 0.7]},
-            "joint 1 needs at least 0.774596 s from way-point 2 to rest at its acceleration",
+            "joint 1 needs at least 0.774596 s from way-point 3 to rest at its acceleration",
         ),
         (
             {"limits": Limits(jerk=4.0, joints=2), "duration_upper": [9.0, 0.4, 0.6]},
-            "joint 1 needs at least 1.1052 s from way-point 2 to rest at its jerk limit",
+            "joint 1 needs at least 1.1052 s from way-point 3 to rest at its jerk limit",
         ),
         (
             {
