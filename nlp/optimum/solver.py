@@ -249,8 +249,8 @@ def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) 
 def _widely(problem: Problem, ask: _Ask) -> Solution:
     """The answer by rounds of the NLP where these are quick, or else from a wide search.
 
-    Where knots follow the durations one descent comes first: on random problems all starts from
-    which a motion was found ended at one total.
+    On B-splines one descent comes first: on random problems all descents that converged ended at
+    one total.
     """
     given = ask.initial
     if given is not None:
