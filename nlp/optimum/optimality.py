@@ -276,7 +276,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     """Newton steps on stationarity and the active limits; None if they lead nowhere.
 
     A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
-    Four steps are plenty from near by, because the convergence is quadratic. The curve is
+    Four steps are plenty from near by, because each leaves little of the residual. The curve is
     determined.
     """
     first = rows = exact_rows(problem, durations)

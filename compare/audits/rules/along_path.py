@@ -14,6 +14,9 @@ from ..printed_row import PrintedRow
 from ..study import Study
 from .rule_group import Explained, rule_group
 
+_GRID = 0.01
+"""Share of a time that a planner's grid or sampling may explain: on its usual grids TOPPRA misses
+the shortest time by up to 0.4 %."""
 _SAMPLED = (
     "Both times hold for all paths that differ from the spline through the way-points by at most "
     "twice as much as a spline of another degree does."
@@ -30,7 +33,8 @@ _SAMPLED = (
         "undercuts.",
         "Supported if it lies between them, inconsistent if it lies below both, else not "
         "checkable, because a motion may take longer. If it is called optimal, a longer total is "
-        "inconsistent too. Both bounds hold however the digits were rounded, and where points "
+        "inconsistent too. A difference of up to 1 % accuses nobody, because the grid of a planner "
+        "may explain it. Both bounds hold however the digits were rounded, and where points "
         "sample the path, for all paths that differ from their spline by at most twice as much as "
         "a spline of another degree does.",
         "A lap is called time-optimal at 1.7000 s, and a motion along it takes 1.6474 s.",
@@ -63,12 +67,16 @@ def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Findi
         "longer",
         f"is {far} longer, as a motion may be",
     )
-    if away < 0.0:
+    gridded = 0.0 < abs(away) <= _GRID
+    if away < 0.0 and not gridded:
         verdict, kind, said = ClaimVerdict.INCONSISTENT, "shorter", f"is {far} shorter"
     elif away == 0.0 and close(row):
         verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "lies between them"
     elif away == 0.0:
         kind, said = "wide", "is not below the first, and they are far apart"
+    elif gridded and (optimal or away < 0.0):
+        side = "shorter" if away < 0.0 else "longer"
+        kind, said = side, f"is {far} {side}, which the grid of a planner may explain"
     elif optimal:
         verdict, said = ClaimVerdict.INCONSISTENT, f"is {far} longer"
     upper = f"one takes {best.upper:.6g} s" if np.isfinite(best.upper) else "none was found"
