@@ -33,7 +33,7 @@ _SAMPLED = (
         "undercuts.",
         "Supported if it lies between them, inconsistent if it lies below both, else not "
         "checkable, because a motion may take longer. If it is called optimal, a longer total is "
-        "inconsistent too. A difference of up to 1 % accuses nobody, because the grid of a planner "
+        "inconsistent too. A difference of up to 1 % decides nothing, because a planner's grid "
         "may explain it. Both bounds hold however the digits were rounded, and where points "
         "sample the path, for all paths that differ from their spline by at most twice as much as "
         "a spline of another degree does.",

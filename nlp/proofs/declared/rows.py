@@ -99,7 +99,7 @@ class NearLimits:
         own = pieces[:, segment, :, joint]  # (row, box, power)
         found, far = own @ np.swapaxes(self.shapes, 1, 2), order == 0
         found /= np.where(far, 1.0, size).T[:, :, None]
-        found[far] += 1.0 - size.T[far][:, :, None]
+        found[far] = found[far] - size.T[far][:, :, None] + 1
         rises, no = found[:, :, 1:] > found[:, :, :-1], np.full((*found.shape[:2], 1), False)
         beside = np.concatenate([no, ~rises], axis=2) | np.concatenate([rises, no], axis=2)
         found[beside] = -np.inf  # all but peaks

@@ -39,7 +39,8 @@ OPTIMAL = sentence("s", "optimal", "t")
     ("value", "verdict", "kind"),
     [
         ("2.0", ClaimVerdict.SUPPORTED, "fits"),
-        ("1.98", ClaimVerdict.INCONSISTENT, "shorter"),
+        ("1.98", ClaimVerdict.NOT_CHECKABLE, "shorter"),
+        ("1.97", ClaimVerdict.INCONSISTENT, "shorter"),
         ("1.85", ClaimVerdict.INCONSISTENT, "shorter"),
         ("2.3", ClaimVerdict.NOT_CHECKABLE, "longer"),
     ],
@@ -66,7 +67,8 @@ def test_digits_of_limits_open_both_bounds() -> None:
         ("1.61", ClaimVerdict.SUPPORTED),
         ("2.42", ClaimVerdict.SUPPORTED),
         ("1.58", ClaimVerdict.INCONSISTENT),
-        ("2.45", ClaimVerdict.INCONSISTENT),
+        ("2.44", ClaimVerdict.NOT_CHECKABLE),
+        ("2.46", ClaimVerdict.INCONSISTENT),
     ):
         found = finding(along(LINE, value, OPTIMAL, limits=DIGITS), "s", "TG305")
         assert found.verdict is verdict, found.sentences
