@@ -252,7 +252,7 @@ def _total_beside(asked: _Asked) -> Finding:
     else:
         how = asked.between
         totals = asked.range(lambda motion: [motion.total_time])
-        plain, fits = totals.plain, totals.meets(number.lower, number.cut_off().upper)
+        plain, fits = totals.plain, totals.meets(*_meant(number))
         notes = _notes(asked, totals)
         if not fits and totals.spans(number.lower, number.cut_off().upper):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
@@ -327,8 +327,12 @@ def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, boo
         high = total(most, Digits.TIGHTEST) * (1.0 + FEW_ROUNDINGS)
     except CaseError:
         high = inf
-    cut = number.cut_off()
-    return plain, meet((cut.lower, cut.upper), (low, high))
+    return plain, meet(_meant(number), (low, high))
+
+
+def _meant(total: Measured) -> tuple[float, float]:
+    """What a printed total may stand for: rounded up, so that the limits are kept, to cut off."""
+    return 2.0 * total.lower - total.value, total.cut_off().upper
 
 
 def _phases_beside(asked: _Asked) -> Finding:
