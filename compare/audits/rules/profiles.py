@@ -207,7 +207,7 @@ def _impossible(asked: _Asked) -> Finding:
     said: tuple[str, ...] = ()
     if turned.every():
         totals = turned.totals
-        if totals.meets(_ends(row.time(claim.value))):
+        if totals.meets(_meant(row.time(claim.value))):
             took = seconds(totals.plain)
             said = (f"With a plateau of {text} {unit}, the profile takes {took}, which fits.",)
     return _found(
@@ -249,7 +249,7 @@ def _total_beside(asked: _Asked) -> Finding:
     else:
         how = asked.between
         totals = asked.totals
-        plain, fits = totals.plain, totals.meets(_ends(number))
+        plain, fits = totals.plain, totals.meets(_meant(number))
         notes = _notes(asked, totals)
         if not fits and totals.spans(_ends(number)):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
@@ -321,7 +321,12 @@ def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, boo
         high = total(most, Digits.TIGHTEST) * (1.0 + FEW_ROUNDINGS)
     except CaseError:
         high = inf
-    return plain, meet(_ends(number), (low, high))
+    return plain, meet(_meant(number), (low, high))
+
+
+def _meant(total: Measured) -> tuple[float, float]:
+    """What a printed total may stand for: rounded up, so that the limits are kept, to cut off."""
+    return 2.0 * total.lower - total.value, total.cut_off().upper
 
 
 def _phases_beside(asked: _Asked) -> Finding:

@@ -227,6 +227,22 @@ def test_braking_less_than_speeding_up_takes_longer() -> None:
         assert finding(text, "t", "TG304").verdict == verdict
 
 
+@pytest.mark.parametrize(
+    ("value", "verdict"),
+    [
+        ("1.56", "supported"),
+        ("1.57", "supported"),
+        ("1.55", "inconsistent"),
+        ("1.58", "inconsistent"),
+    ],
+)
+@pytest.mark.parametrize("curve", [QUINTIC, MOVING | {"end_derivatives": [0.001, 0]}])
+def test_a_total_may_be_rounded_up_to_keep_the_limits(value: str, verdict: str, curve: Any) -> None:
+    """One radian at 0.9 rad/s and 2 rad/s² takes 1.5611 s, from a thousandth of a rad/s 1.5606."""
+    asked = profiled("trapezoidal", value, [[0, 1]], curve, velocity=0.9, acceleration=2)
+    assert finding(asked, "t", "TG304").verdict == verdict
+
+
 def test_an_optimal_profile_is_the_shortest() -> None:
     for value, verdict in (("1.220", "supported"), ("1.400", "inconsistent")):
         own = total("t", value, profile="s-curve", **CLAIM)
