@@ -132,7 +132,10 @@ class Gap(Entry):
         return f"{' to '.join(one if one.startswith('-') else f'+{one}' for one in ends)} %"
 
     def __str__(self) -> str:
-        return f"{self.percent} ({self.kind}, reference {self.reference.evidence})"
+        said = f"{self.percent} ({self.kind}, reference {self.reference.evidence})"
+        # `highest` is relative to the proven bound, where there is one.
+        undercut = self.highest < 0 and not isinstance(self.reference.lower, Why)
+        return f"{said}; no motion within the limits is that short" if undercut else said
 
 
 class Finding(Entry):

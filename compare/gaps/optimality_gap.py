@@ -48,7 +48,7 @@ def gap(
     Raises
     ------
     TrajgapError
-        If the reference is not a positive finite time.
+        If the time is negative, or the reference is not a positive finite time.
     """
     if isinstance(reference, Solution):
         reference = _reference(reference)
@@ -57,6 +57,8 @@ def gap(
     if not 0 < reference.upper < float("inf"):
         raise TrajgapError(f"gap: the reference {reference.upper} s is not a positive finite time")
     low, high = time if isinstance(time, tuple) else (float(time), float(time))
+    if not 0 <= low <= high:
+        raise TrajgapError(f"gap: {time} is no time; give seconds, from 0 on")
     base = reference.upper if isinstance(reference.lower, Why) else reference.lower
     return Gap(
         kind=GapKind.OPTIMALITY if feasible else GapKind.REPORTED,

@@ -124,7 +124,15 @@ def _share(slower: Interval, faster: Interval, base: str) -> Interval:
 def _percentage(one: _Improved, percent: Printed) -> Finding:
     """The percentage under each base that is admissible; the first that fits is taken."""
     tried, slower, faster = [], one.slower, one.faster
-    bases = one.bases or ["slower"]
+    bases = one.bases
+    if not bases:
+        return finding(
+            "TG103",
+            one.claim,
+            "share of nothing",
+            f"A share of {one.faster} {one.study.time_unit}, which may be 0, cannot be computed.",
+            basis=Basis.DIGITS,
+        )
     for base in bases:
         share = f"{one.what}, as a share of {_SHARE_OF[base]},"
         rounded = _share(slower.interval, faster.interval, base)

@@ -44,6 +44,15 @@ def test_a_solution_is_a_reference() -> None:
         assert (found.lowest, found.reference.evidence) == (0, evidence)
 
 
+def test_no_time_is_negative_or_below_a_proven_bound_without_a_word() -> None:
+    for time in (-3.0, float("nan"), (2.0, 1.0)):
+        with pytest.raises(TrajgapError, match="is no time"):
+            gap(time, 2.0)
+    proven = Reference(upper=1.5, lower=1.499, evidence=Evidence.CERTIFIED)
+    assert str(gap(1.2, proven)).endswith("no motion within the limits is that short")
+    assert "that short" not in str(gap(1.2, 1.5)) + str(gap(1.6, proven))
+
+
 @pytest.mark.parametrize("reference", [0.0, -1.0, float("inf"), float("nan")])
 def test_a_reference_must_be_a_positive_finite_time(reference: float) -> None:
     with pytest.raises(TrajgapError, match="is not a positive finite time"):
