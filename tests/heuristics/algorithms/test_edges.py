@@ -72,6 +72,8 @@ def test_the_branches_meet_in_14_and_not_in_15() -> None:
     assert crossover_rate(below, 1.0, 2.0) == pytest.approx(crossover_rate(THIRD, 1.0, 2.0))
     jump = mutation_rate(THIRD, 0.05, 0.02) - mutation_rate(below, 0.05, 0.02)
     assert jump == pytest.approx(0.05 / 3 - 0.02 * 2 / 3, rel=1e-12)
+    rates = [round(float(mutation_rate(c, 0.05, 0.02)), 4) for c in (below, THIRD)]
+    assert rates == [0.0133, 0.0167]
     # A scattered population is crossed and mutated least, where the text wants it mixed most.
     assert crossover_rate(0.0, 1.0, 2.0) == crossover_rate(1.0, 1.0, 2.0) == 0.0
     # With k1 = 1 and k4 = 2 the branches meet by the choice of constants, not by construction.
