@@ -249,8 +249,7 @@ def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) 
 def _widely(problem: Problem, ask: _Ask) -> Solution:
     """The answer by rounds of the NLP where these are quick, or else from a wide search.
 
-    On B-splines one descent comes first: on random problems all descents that converged ended at
-    one total.
+    On B-splines one descent comes first: on random problems all that converge have one total.
     """
     given = ask.initial
     if given is not None:
@@ -258,8 +257,7 @@ def _widely(problem: Problem, ask: _Ask) -> Solution:
     quick = problem.segments >= SPARSE and _moves_throughout(problem)
     found = _programmed(problem, ask) if quick else None
     if as_piecewise(problem.curve) is None:
-        start = equal_start(problem)[None]
-        found = _descended(problem, start, made_up(problem, FLOORS[0]))
+        found = _descended(problem, equal_start(problem)[None], made_up(problem, FLOORS[0]))
     if found is None or found.status is not Status.CONVERGED:
         search = partial(basins, problem, ask.starts, ask.seed)
         searched = _above_floors(problem, search, FLOORS)
