@@ -27,7 +27,7 @@ from .own_result import bare_totals, own_result
 from .path_times import along_paths
 from .printed_row import PrintedRow
 from .profile_motions import above_shortest
-from .rounding import meet
+from .rounding import meet, rounds_to
 from .stated import RowClaim, other_objective, printed_total
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Pair, Study, Total
@@ -305,7 +305,7 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= best and floor <= high:
         return f"{said} lies in the proven interval of the optimum, {shown_best}"
-    if low <= best <= high or (own is not None and own.lower <= best <= own.upper):
+    if rounds_to((low, high), best) or (own is not None and own.lower <= best <= own.upper):
         return _Agrees(said, name, optimum)
     if own is not None and own.cut_off().lower <= best <= own.cut_off().upper:
         return f"{said} agrees with the {optimum} if digits were cut off"

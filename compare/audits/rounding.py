@@ -60,6 +60,11 @@ Ends = tuple[Fraction | float, Fraction | float]
 """The lower and the upper end of an interval, both inside; an `Interval` is one."""
 
 
+def rounds_to(interval: tuple[float, float], time: float) -> bool:
+    """Whether a computed time lies in an interval, but for what a few floats round."""
+    return meet(interval, (time * (1.0 - FEW_ROUNDINGS), time * (1.0 + FEW_ROUNDINGS)))
+
+
 def meet(a: Ends, b: Ends) -> bool:
     """Whether two intervals have a number in common."""
     return bool(a[0] <= b[1] and b[0] <= a[1])

@@ -29,7 +29,7 @@ from ..digit_ranges import below_certified
 from ..fixed_ratios import at_ratios, off_ratios, optimum_called, planned_apart
 from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS, OPTIMAL
-from ..rounding import meet
+from ..rounding import meet, rounds_to
 from ..stated import RowClaim, called, called_under, other_objective
 from ..stated_totals import contradicting_lows, rounded_up_low, total_excludes
 from ..study import Study, Total
@@ -135,7 +135,8 @@ def _distance(
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
-    if distance.highest < 0:
+    near = rounds_to(interval, solution.best)
+    if distance.highest < 0 and not near:
         explained = _below(row, interval)
         if explained is not None:
             said.append(explained)
@@ -143,7 +144,7 @@ def _distance(
             before = isinstance(claim, TimeClaim) and claim.state == "before"
             severity = Severity.INFO if before else Severity.WARNING
             said.append(_BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND)
-    agrees = kept and interval[0] <= solution.best <= interval[1]
+    agrees = kept and near
     return row.finding(
         "TG303" if shared else "TG302",
         "other objective" if informs else "distance",
@@ -312,7 +313,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
     sides.solutions.append(solution)
-    inside = rounded_up_low(row, interval) <= solution.best <= interval[1]
+    inside = rounds_to((rounded_up_low(row, interval), interval[1]), solution.best)
     if inside and not total_excludes(row, solution.best):
         sides.agreeing.append(name)
         sides.summed += isinstance(claim, RowClaim) and claim.total is None
