@@ -97,8 +97,7 @@ def _plain(
         "TG210": f"The durations {at_place(where)} break a limit",
         "TG211": f"A printed value does not follow from the printed durations ({where})",
         "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
-        "TG301": "Shortest times scale inversely with velocity limits, so the two printed times "
-        "cannot both be shortest",
+        "TG301": "Shortest times scale inversely with velocity limits; the two printed ones do not",
         "TG304": f"A printed total is not that of its profile ({where})"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",

@@ -162,8 +162,10 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
     for word, own in ordered:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
         mark = " (implausible)" if all(one in far for one in own) else ""
-        parts.append(f"{word} under {which}{mark}")
-    return " and ".join(parts)
+        # What does not keep the limits breaks one, and the other way round.
+        other = "not" if parts and open_ not in said else word
+        parts.append(f"{other} under {which}{mark}")
+    return (" but " if open_ not in said else " and ").join(parts)
 
 
 def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:

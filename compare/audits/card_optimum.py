@@ -62,8 +62,9 @@ def optimum_line(
     if not beside or stands_in(study):
         return _without_totals(study, words)
     where = ["under the default reading"] if len(study.readings) > 1 else []
-    if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
-        where.insert(0, "with these way-points" if before else "with doubtful way-points")
+    doubted = any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim)
+    if doubted and not before:
+        where.insert(0, "with doubtful way-points")
     sentence = ", ".join([*where, _side_by_side(beside)])
     return f"{sentence[:1].upper()}{sentence[1:]}."
 
