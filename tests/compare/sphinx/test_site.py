@@ -63,6 +63,11 @@ def test_every_published_case_has_its_result_and_page():
         page = (SITE / "reports" / f"{name}.md").read_text(encoding="utf-8")
         assert page.startswith(f"# {RESULTS.case(name)['title']}\n")
         assert name in (SITE / "reports" / "index.md").read_text(encoding="utf-8")
+        # A report has a section for each verdict on a claim, and none that would be empty.
+        shown = re.findall(r"\{trajgap-claims\} \S+\n:verdict: (.+)\n", page)
+        found = {one["verdict"] for one in RESULTS.case(name)["verdicts"]}
+        assert found <= {word for each in shown for word in each.split(", ")}, name
+        assert all(found.intersection(each.split(", ")) for each in shown), name
 
 
 MARKS = (
