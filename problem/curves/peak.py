@@ -119,21 +119,6 @@ class Furthest:
         time = float(trajectory.times(k, np.array(s)))
         return Extremum(joint, k, self.order, s, time, float(self.values[side, joint]))
 
-    def largest(self, trajectory: Trajectory, joint: int, errors: Array) -> tuple[Extremum, float]:
-        """The largest size of a joint, the first of equal ones, and a bound on its error.
-
-        With the errors that `furthest` has got, the true peak is at least its own extremum less
-        that one's error, and at most the largest sum of an extremum and its error: a short segment,
-        whose error is large but whose values are small, does not blur the peak of another.
-        """
-        sizes = np.abs(self.values[:, joint])
-        where = [(self.pieces[side, joint], self.places[side, joint]) for side in (0, 1)]
-        first = int(where[1] < where[0])
-        side = 1 - first if sizes[1 - first] > sizes[first] else first
-        top = self.at(trajectory, side, joint)
-        reach = float(np.maximum(self.outer[1, joint], -self.outer[0, joint]))
-        return top, max(float(errors[top.segment, joint]), reach - abs(top.value))
-
 
 def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
     """How far a derivative goes to both sides, for all t.

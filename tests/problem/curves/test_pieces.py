@@ -37,10 +37,6 @@ def test_the_furthest_are_the_largest_of_all_extrema(name: str) -> None:
                 min(v + e for v, e in near),
                 max(v - e for v, e in near),
             ]
-            top, bound = reach.largest(curve, j, errors)
-            assert top == max(points, key=lambda e: abs(e.value))
-            own = errors[top.segment, j]
-            assert bound == max(own, max(abs(v) + e for v, e in near) - abs(top.value))
 
 
 def test_steps_are_those_of_the_pieces_on_both_sides() -> None:
