@@ -83,7 +83,7 @@ def misprints(spot: Spot, signed: bool = False) -> Iterator[Slip]:
             continue
         ratio = float(other.fraction / was.fraction) if was.fraction else 0.0
         yield Slip(
-            change=f"{spot.name} may be misprinted: {was.text} for {other.text}.",
+            change=f"{spot.name} may be misprinted: {other.text} instead of {was.text}.",
             edits=((spot.path, Printed(other.text, exact=was.exact)),),
             slips=1,
             share=max(ratio, 1 / ratio) if ratio > 0 else float("inf"),

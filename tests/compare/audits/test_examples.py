@@ -96,7 +96,7 @@ SAID = {
     ("he2022-closed-form-paths", "squircle-case-1"): "is 3.19 % longer",
     ("pilz-atrap-profile", "reversal-total"): "takes 3.73205 s",
     ("pilz-ptp-scaled", "total"): "takes 4.5 s",
-    ("riboli2023-iptp-16-tasks", "task-15-time"): "With 9.4 rad/s it takes 0.964148 s, which fits",
+    ("riboli2023-iptp-16-tasks", "task-15-time"): "9.4 rad/s, the profile takes 0.964148 s",
     ("robotics1-2017-04-11", "phases"): "phases of 0.225, 0.99583, 0.675 s",
     ("ruckig-issue-128", "reached"): "brakes into them at once",
     ("ruckig-issue-128", "reported"): "takes 0.167347 s; the printed 0.230593 s is 37.79 %",

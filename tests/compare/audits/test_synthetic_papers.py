@@ -128,7 +128,7 @@ def holds(said: str, true: float) -> bool:
         slack = 1e-6 if least else last / 2 + 1e-6
         held = own >= float(percent) - slack
         held &= bool(least) or own <= float(percent) + slack
-        if not held and "at the printed digits" not in said:
+        if not held and "At the printed digits" not in said:
             return False
     return True
 

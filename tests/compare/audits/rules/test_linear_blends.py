@@ -127,7 +127,7 @@ def test_the_card_speaks_of_the_row_and_of_nothing_else() -> None:
     kept = audited_text(made_up(blends="0.50")).card
     assert kept.limits == "The printed durations keep the limits."
     assert audited_text(made_up()).card.limits.endswith(
-        "the printed durations belong to another curve."
+        "belong to another curve (linear segments with parabolic blends)."
     )
 
 
