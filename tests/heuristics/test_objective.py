@@ -216,11 +216,7 @@ def test_handlings_by_name() -> None:
 
 @pytest.mark.parametrize(
     "limits",
-    [
-        Limits(3.0, joints=2),
-        Limits([6.0, 5.0], [8.0, 9.0]),
-        Limits(6.0, 8.0, [25.0, 30.0]),
-    ],
+    [Limits(3.0, joints=2), Limits([6.0, 5.0], [8.0, 9.0]), Limits(6.0, 8.0, [25.0, 30.0])],
     ids=["v", "va", "vaj"],
 )
 def test_equal_durations_at_the_limit(limits: Limits) -> None:
@@ -314,8 +310,7 @@ def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
 def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
     tight = limited(cubic_spline(3), 0.001)
     with pytest.raises(
-        TrajgapError,
-        match=r"no upper bound .* joint \d beyond a position limit, .*; give them",
+        TrajgapError, match=r"no upper bound .* joint \d beyond a position limit, .*; give them"
     ):
         search_box(replace(tight, duration_upper=np.inf))
     np.testing.assert_array_equal(search_box(tight).upper, [6.0, 6.0, 6.0])

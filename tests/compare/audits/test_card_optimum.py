@@ -25,10 +25,7 @@ def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity
 
 @pytest.mark.parametrize(
     ("coupling", "said"),
-    [
-        ("per-joint", "4.0000 to 4.0010 s from optimising each joint separately"),
-        ("shared", "the "),
-    ],
+    [("per-joint", "4.0000 to 4.0010 s from optimising each joint separately"), ("shared", "the ")],
 )
 def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima(
     coupling: str, said: str

@@ -97,10 +97,7 @@ def test_a_spoiled_file_is_searched_over_and_replaced(
     (file,) = tmp_path.glob("*.json")
     own = file.read_bytes()
     stored = json.loads(own)
-    question = {
-        "problems": [one.words() for one in asked],
-        "code": kept_optima.search_code(),
-    }
+    question = {"problems": [one.words() for one in asked], "code": kept_optima.search_code()}
     assert stored["seal"] == seal([question, stored["answers"]])
     SPOILED[name](stored["answers"])
     stored["seal"] = seal([question, stored["answers"]])

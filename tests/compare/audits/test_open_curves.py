@@ -17,10 +17,7 @@ from trajgap.problem import Limits, Problem, quintic_spline
 
 CASE = paper(
     ["0.3 0.9 0.2 -0.45", "-1.0 -0.55 0.35 0.1"],
-    readings(
-        free={"default": True},
-        virtual={"interpolant": {"family": "quintic-spline-virtual"}},
-    ),
+    readings(free={"default": True}, virtual={"interpolant": {"family": "quintic-spline-virtual"}}),
     total("total", "2.9"),
     row("four", "0.98 0.89 0.20 0.94", total="3.01"),
     sentence("kept", "within_limits", "four"),

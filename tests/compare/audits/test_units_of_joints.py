@@ -34,10 +34,7 @@ from trajgap.problem.motions import MotionForm, motion_text, read_motion
 RULES = ["TG107", "TG110", "TG201", "TG203", "TG208", "TG209", "TG601"]
 """Of rules that speak of joints' numbers and solve nothing."""
 Change = tuple[str, str]
-STRETCHED = (
-    'family = "cubic-spline"',
-    'family = "uniform-cubic-b-spline"\ntime = "stretched"',
-)
+STRETCHED = ('family = "cubic-spline"', 'family = "uniform-cubic-b-spline"\ntime = "stretched"')
 
 
 @cache

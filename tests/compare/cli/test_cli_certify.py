@@ -185,10 +185,7 @@ def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any])
     assert (code, err) == (1, "")
     words = [line.split(": ")[1] for line in files_of(out)]
     assert words == ["proves", "altered, still proves", "refused", "refused"]
-    for names, code, worth in (
-        (("good", "harmless"), 0, words[:2]),
-        (("broken",), 1, words[2:3]),
-    ):
+    for names, code, worth in ((("good", "harmless"), 0, words[:2]), (("broken",), 1, words[2:3])):
         files = [f"{name}.json" for name in names]
         found = run.document("verify", *files, code=code, kind="verify")["verified"]
         assert [one["worth"] for one in found] == worth

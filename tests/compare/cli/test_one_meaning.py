@@ -12,8 +12,7 @@ from trajgap.problem import Coupling, Limits, Problem, fit, load_case, three_fiv
 
 
 @pytest.mark.parametrize(
-    "case_id",
-    [pytest.param("puma560-mnam-pso-353", marks=pytest.mark.slow), "irb460-pso-353"],
+    "case_id", [pytest.param("puma560-mnam-pso-353", marks=pytest.mark.slow), "irb460-pso-353"]
 )
 def test_python_and_the_command_line_solve_alike(run, case_id):
     shown = json.loads(run("solve", case_id, "--json")[1])["results"]

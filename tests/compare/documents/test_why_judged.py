@@ -95,18 +95,9 @@ def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_l
 
 
 def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ() -> None:
-    (one,) = grouped(
-        [
-            Said("refuted", "TG101", "k", ("always.", "So.")),
-        ],
-        READINGS,
-        NAMED,
-    )
+    (one,) = grouped([Said("refuted", "TG101", "k", ("always.", "So."))], READINGS, NAMED)
     assert with_readings(one, READINGS, NAMED) == ("always.", "So.")
-    assert with_readings(one, READINGS, NAMED, word=True) == (
-        "Under every reading: always.",
-        "So.",
-    )
+    assert with_readings(one, READINGS, NAMED, word=True) == ("Under every reading: always.", "So.")
 
 
 def test_whole_sentences_stand_in_the_open_one_at_least() -> None:

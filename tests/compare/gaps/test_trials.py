@@ -62,8 +62,7 @@ def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["overspends", "scribbles", "returns_short", "forks", "leaves_traces", "warns"],
+    "name", ["overspends", "scribbles", "returns_short", "forks", "leaves_traces", "warns"]
 )
 def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
     before, floats = run_trial(small_trial("support.optimizers:draws")), np.geterr()

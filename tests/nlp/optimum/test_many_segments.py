@@ -148,11 +148,7 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
     calls: list[tuple[float, float]] = []
 
     def failing(
-        program: Program,
-        rows: Rows,
-        state: object,
-        stage: tuple[float, float],
-        within: object,
+        program: Program, rows: Rows, state: object, stage: tuple[float, float], within: object
     ) -> tuple[bool, int, float]:
         success, count, seconds = round_(program, rows, state, stage, within)  # type: ignore[arg-type]
         calls.append(stage)

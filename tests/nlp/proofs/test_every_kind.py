@@ -330,10 +330,7 @@ UNCOVERED: list[tuple[str, Problem]] = [
         "not rebuilt in rational numbers; at fixed ratios",
         through(uniform_cubic_b_spline(4, "timed"), **AT_RATIOS),
     ),
-    (
-        "coefficients free: not covered at fixed ratios",
-        through(piecewise((5, 5, 5)), **AT_RATIOS),
-    ),
+    ("coefficients free: not covered at fixed ratios", through(piecewise((5, 5, 5)), **AT_RATIOS)),
     (f"more than {MOST_REBUILT} segments", through(cubic_spline(MOST_REBUILT + 1), **AT_RATIOS)),
     (MOVING, through(cubic_spline(3, MOVES), **AT_RATIOS)),
     ("at most 120 digits", through(three_five_three(), waypoints=[[0], [1e-200], [0.5], [1]])),
@@ -353,10 +350,7 @@ UNBOUNDED: list[tuple[str, Problem]] = [
 
 @pytest.mark.parametrize(
     ("subject", "reason", "problem"),
-    [
-        *((Subject.DECLARED, *one) for one in UNCOVERED),
-        *((Subject.ANY, *one) for one in UNBOUNDED),
-    ],
+    [*((Subject.DECLARED, *one) for one in UNCOVERED), *((Subject.ANY, *one) for one in UNBOUNDED)],
 )
 def test_what_no_proof_covers_is_said(subject: Subject, reason: str, problem: Problem) -> None:
     assert reason in str(covered(exact_problem(problem), subject))

@@ -85,11 +85,7 @@ def test_the_example_of_fang2020_is_what_the_paper_prints():
     """Tables 2, 3, 4 and 7 typed a second time: a septic needs no code."""
     case = load_case(ROOT / "docs" / "examples" / "fang2020-task1.toml")
     problem = case.problem()
-    limits = [
-        [100, 95, 100, 150, 130, 110],
-        [60, 60, 75, 70, 90, 80],
-        [60, 66, 85, 70, 75, 70],
-    ]
+    limits = [[100, 95, 100, 150, 130, 110], [60, 60, 75, 70, 90, 80], [60, 66, 85, 70, 75, 70]]
     points = [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]]
     np.testing.assert_allclose(problem.waypoints, np.deg2rad(points), rtol=1e-15)
     np.testing.assert_allclose(problem.limits.derivatives.T, np.deg2rad(limits), rtol=1e-15)

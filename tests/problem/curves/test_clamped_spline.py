@@ -229,10 +229,7 @@ def test_inner_knots_at_the_times_of_way_points_make_a_spline(
     spline = curve.polynomial_form()
     np.testing.assert_allclose(fit(spline, q, h)(at), fit(curve, q, h)(at), atol=1e-9)
     assert spline is not curve
-    for knots, places in (
-        (Knots.WAYPOINTS, Parameters.CHORD),
-        (Knots.CONTINUED, Parameters.TIMES),
-    ):
+    for knots, places in ((Knots.WAYPOINTS, Parameters.CHORD), (Knots.CONTINUED, Parameters.TIMES)):
         other = ClampedBSpline(5, 5, knots, places)
         assert other.polynomial_form() is other
 
@@ -304,10 +301,7 @@ PRINTED = {"parameters": "given", "time": "stretched"}
             {"knots": "waypoints", "knot_vector": vector(5)},
             'knot_vector: is for knots that are "gi',
         ),
-        (
-            {"parameters": "chord"},
-            'if knots are "given" and time is "timed", way-points are pas',
-        ),
+        ({"parameters": "chord"}, 'if knots are "given" and time is "timed", way-points are pas'),
         ({**PRINTED, "parameters": "chord"}, 'if knots are "given" and time is "stretched"'),
         (PRINTED, 'fractions: are missing where parameters are "given"'),
         (

@@ -32,18 +32,9 @@ REST2, REST3, REST4 = (tuple((r, 0.0) for r in range(1, n + 1)) for n in (2, 3, 
 CURVES = {
     "cubic": (cubic_spline(7), ((1, 0.0),) * 2),
     "natural cubic": (cubic_spline(5, ((2, 0.0),)), ((2, 0.0),) * 2),
-    "cubic, slopes": (
-        cubic_spline(4, ((1, FIRST),), ((1, LAST),)),
-        ((1, FIRST), (1, LAST)),
-    ),
-    "cubic, mixed": (
-        cubic_spline(3, ((1, FIRST),), ((2, BENT),)),
-        ((1, FIRST), (2, BENT)),
-    ),
-    "cubic, turned": (
-        cubic_spline(3, ((2, LAST),), ((1, FIRST),)),
-        ((2, LAST), (1, FIRST)),
-    ),
+    "cubic, slopes": (cubic_spline(4, ((1, FIRST),), ((1, LAST),)), ((1, FIRST), (1, LAST))),
+    "cubic, mixed": (cubic_spline(3, ((1, FIRST),), ((2, BENT),)), ((1, FIRST), (2, BENT))),
+    "cubic, turned": (cubic_spline(3, ((2, LAST),), ((1, FIRST),)), ((2, LAST), (1, FIRST))),
     "quintic": (quintic_spline(7), (REST2, REST2)),
     "quintic, moving": (quintic_spline(5, ((1, FIRST), (2, BENT))), (((1, FIRST), (2, BENT)),) * 2),
     "septic": (septic_spline(5), (REST3, REST3)),

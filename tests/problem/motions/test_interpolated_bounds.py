@@ -181,10 +181,7 @@ def test_options_replace_what_the_digits_say(tmp_path):
 
 def test_a_message_is_exact_for_its_controller_alone(tmp_path):
     points = [
-        {
-            "positions": [round(0.3 * k**2, 3)],
-            "time_from_start": {"sec": k, "nanosec": 0},
-        }
+        {"positions": [round(0.3 * k**2, 3)], "time_from_start": {"sec": k, "nanosec": 0}}
         for k in range(6)
     ]
     (tmp_path / "m.json").write_text(json.dumps({"joint_names": ["a"], "points": points}))

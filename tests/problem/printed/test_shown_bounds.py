@@ -6,10 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 from trajgap.problem import shown_bound
 
-VALUES = st.one_of(
-    st.fractions(-(10**6), 10**6),
-    st.floats(allow_nan=False, allow_infinity=False),
-)
+VALUES = st.one_of(st.fractions(-(10**6), 10**6), st.floats(allow_nan=False, allow_infinity=False))
 
 
 @given(VALUES, st.sampled_from(["lower", "upper"]), st.integers(1, 12))

@@ -52,8 +52,7 @@ def test_a_total_on_a_straight_line_beside_its_trapezoid(
 
 
 @pytest.mark.parametrize(
-    ("value", "verdict"),
-    [("2.0", ClaimVerdict.SUPPORTED), ("2.3", ClaimVerdict.INCONSISTENT)],
+    ("value", "verdict"), [("2.0", ClaimVerdict.SUPPORTED), ("2.3", ClaimVerdict.INCONSISTENT)]
 )
 def test_a_longer_total_is_not_optimal(value: str, verdict: ClaimVerdict) -> None:
     assert finding(along(LINE, value, OPTIMAL), "s", "TG305").verdict is verdict

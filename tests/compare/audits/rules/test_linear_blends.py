@@ -194,9 +194,7 @@ def moved(points: Array, durations: Array, blends: Array, ends: EndBlends) -> Ar
 
 
 @given(
-    st.lists(st.floats(-3, 3), min_size=2, max_size=5),
-    st.data(),
-    st.sampled_from(list(EndBlends)),
+    st.lists(st.floats(-3, 3), min_size=2, max_size=5), st.data(), st.sampled_from(list(EndBlends))
 )
 def test_such_a_motion_ends_at_the_last_way_point(
     points: list[float], data: st.DataObject, ends: EndBlends

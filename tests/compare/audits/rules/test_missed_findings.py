@@ -73,8 +73,7 @@ def test_no_jerk_at_the_end_of_a_cubic_that_moves_is_impossible(points: str, ver
 
 
 @pytest.mark.parametrize(
-    ("points", "time", "verdict"),
-    [([0, 1], "0.40", "refuted"), ("0 1", "0.45", "not checkable")],
+    ("points", "time", "verdict"), [([0, 1], "0.40", "refuted"), ("0 1", "0.45", "not checkable")]
 )
 def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdict: str) -> None:
     """At most 0.5 s are allowed, and 0.987 s are needed: no optimum, and 0.4 s break the limit."""
