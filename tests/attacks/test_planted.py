@@ -162,9 +162,7 @@ QUICK = 7
         for one in PLANTED
     ],
 )
-def test_a_planted_fault_is_found(
-    one: tuple[str, str, int], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fault_is_found(one: tuple[str, str, int], monkeypatch: pytest.MonkeyPatch) -> None:
     name, _, trials = one
     account = Account(next(a for a in ATTACKS if a.name == name))
     monkeypatch.setattr(faults, "WORKS", {k: w for k, w in faults.WORKS.items() if w.quick})

@@ -72,9 +72,7 @@ def test_an_answer_at_the_edge_of_the_tolerance_passes_the_checker() -> None:
         ),
     ],
 )
-def test_outside_the_bounds_is_infeasible(
-    judge: type, durations: list[float], penalty: float
-) -> None:
+def test_out_of_bounds_is_infeasible(judge: type, durations: list[float], penalty: float) -> None:
     objective = judge((problem_with if judge is DeathPenalty else wide)(), penalty)
     batch = np.array([durations, [1.9, 1.9, 1.9]])
     np.testing.assert_array_equal(objective(batch), [penalty, 1.9 + 1.9 + 1.9])

@@ -92,9 +92,7 @@ def begin(item):
 """
 
 
-def test_a_killed_worker_costs_its_own_work_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_killed_worker_costs_its_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "logged_work.py").write_text(WORK)
     monkeypatch.syspath_prepend(tmp_path)
     begin = import_module("logged_work").begin
@@ -116,9 +114,7 @@ def test_a_killed_worker_costs_its_own_work_alone(
     ("end", "code", "said"),
     [(signal.raise_signal, signal.SIGKILL, "SIGKILL"), (os._exit, 3, "exit code 3")],
 )
-def test_work_that_ends_two_processes_is_refused(
-    end: Callable[[int], None], code: int, said: str
-) -> None:
+def test_work_that_ends_two_is_refused(end: Callable[[int], None], code: int, said: str) -> None:
     with pytest.raises(LostWork) as caught:
         list(in_processes(end, [code, code], 2))
     assert str(caught.value) == (

@@ -56,9 +56,7 @@ def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima
         ("2.000 2.000", "4.000", "4.000 s agrees with the "),
     ],
 )
-def test_a_distance_stands_with_the_limit_that_its_motion_breaks(
-    times: str, value: str, said: str
-) -> None:
+def test_a_distance_has_the_limit_that_its_motion_breaks(times: str, value: str, said: str) -> None:
     assert line(row("all", times, total=value)).startswith(said)
 
 
@@ -129,9 +127,7 @@ def test_a_distance_that_two_totals_share_is_said_once() -> None:
     [("", ""), ("2.000", ""), ("2.042", "2.1 % above"), ("1.959", "at least 2.0 % below")],
 )
 @pytest.mark.parametrize("beside", [False, True])
-def test_a_sum_that_agrees_says_nothing_of_another_printed_total(
-    other: str, said: str, beside: bool
-) -> None:
+def test_a_sum_that_agrees_says_nothing_of_others(other: str, said: str, beside: bool) -> None:
     """The durations are the optimum, 2 s; a total beside them or elsewhere is 2.1 % above it."""
     parts = [row("all", "2.000", **({"total": other} if beside and other else {}))]
     if other and not beside:

@@ -90,9 +90,7 @@ def test_rest_at_all_points_may_be_meant_of_the_ends() -> None:
 
 
 @pytest.mark.parametrize(("orders", "offered"), [([1], 1), ([1, 2], 0)])
-def test_rest_at_the_ends_is_offered_only_where_the_count_fits(
-    orders: list[int], offered: int
-) -> None:
+def test_rest_at_the_ends_is_offered_where_the_count_fits(orders: list[int], offered: int) -> None:
     """Two cubics have 8 coefficients: rest of velocity at the ends leaves 8 conditions, rest of
     acceleration too would leave 10."""
     given = "0.00 0.50 1.00", 90, "1.00 1.00", "2.00"
@@ -197,9 +195,7 @@ def test_what_explains_one_row_does_not_speak_for_another() -> None:
         ("1.25", "-1.20", "Way-point B of joint 1 may be misprinted: 1.20 instead of -1.20."),
     ],
 )
-def test_a_misprint_is_found_where_the_reading_takes_the_number(
-    limit: str, end: str, named: str
-) -> None:
+def test_a_misprint_is_found_where_the_reading_has_it(limit: str, end: str, named: str) -> None:
     points = {"labels": ["A", "B"], "joint_rows": [["0.20", end], ["0.30", "0.90"]]}
     text = paper(
         ["0.10 1.10", "0.30 0.90"],

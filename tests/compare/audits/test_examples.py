@@ -155,9 +155,7 @@ def test_the_optimum_is_the_one_found_before(name: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "durations", "quantity", "truth"), PEAKS)
-def test_peaks_are_those_recomputed(
-    name: str, durations: list[float], quantity: str, truth: str
-) -> None:
+def test_peaks_are_recomputed(name: str, durations: list[float], quantity: str, truth: str) -> None:
     problem = example(name).problem()
     found = np.abs(np.rad2deg(peaks(problem, durations, quantity)))
     places = len(truth.split()[0].split(".")[1])

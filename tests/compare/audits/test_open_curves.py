@@ -136,9 +136,7 @@ def test_a_broken_limit_is_not_refuted_for_rounded_knots(inner: str, verdict: st
 
 
 @pytest.mark.parametrize(("curve", "tables"), [(given("exact", TIMED), 0), (RULED, 1)])
-def test_no_table_of_rules_stands_beside_a_printed_vector(
-    curve: dict[str, Any], tables: int
-) -> None:
+def test_no_table_of_rules_is_beside_a_printed_vector(curve: dict[str, Any], tables: int) -> None:
     assert len(_determined(study_of(text(curve, "1 1 1")).case)) == tables
 
 
@@ -146,9 +144,7 @@ def test_no_table_of_rules_stands_beside_a_printed_vector(
 @pytest.mark.parametrize(
     ("first", "verdict"), [("0.86", "not checkable"), ("0.96", "inconsistent")]
 )
-def test_stretched_segments_jump_unless_rounding_hides_their_proportions(
-    first: str, verdict: str
-) -> None:
+def test_stretched_segments_jump_unless_rounding_hides_the_ratio(first: str, verdict: str) -> None:
     """3 : 3.5 : 3.5 are the proportions of the parameters; 0.86 : 1.00 : 1.00 round to them."""
     one = audited_text(text(given("exact", STRETCHED), f"{first} 1.00 1.00"))
     assert verdicts(one)["smooth"] == verdict

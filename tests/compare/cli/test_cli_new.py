@@ -32,9 +32,7 @@ def test_new_with_every_unit(run: Run, table: str) -> None:
 @pytest.mark.parametrize(
     ("where", "place"), [(("--where", "Table 4"), "Table 4"), ((), "a place not stated")]
 )
-def test_what_new_writes_can_be_shown(
-    run: Run, table: str, where: tuple[str, ...], place: str
-) -> None:
+def test_what_new_writes_is_shown(run: Run, table: str, where: tuple[str, ...], place: str) -> None:
     units = ("--position-unit", "deg", "--time-unit", "s", "--total", "3.4")
     out = run.done("new", "out.toml", "--from", table, *units, *where)
     assert out == "written: out.toml\nnext: trajgap audit out.toml  # judges what is claimed\n"
@@ -79,9 +77,7 @@ def test_new_asks_again_on_a_terminal(table: str) -> None:
     assert load_case("out.toml").document.units.position == "rad"
 
 
-def test_new_takes_no_wrong_unit_from_a_pipe(
-    run: Run, table: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_wrong_unit_from_a_pipe(run: Run, table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("furlong\nrad\n"))
     assert_refused(
         run("new", "out.toml", "--from", table),
@@ -118,9 +114,7 @@ def test_new_refuses_an_angle_for_a_joint_that_slides(run: Run, folder: Path, ar
 
 
 @pytest.mark.parametrize("header", ["turn,swing,reach", "1,2,3", "point,1,2,3"])
-def test_new_takes_limits_and_names_from_a_urdf(
-    run: Run, folder: Path, arm: str, header: str
-) -> None:
+def test_new_has_limits_and_names_of_a_urdf(run: Run, folder: Path, arm: str, header: str) -> None:
     rows = ROWS if header[0] != "p" else "".join(f"P{k},{r}\n" for k, r in enumerate(ROWS.split()))
     (folder / "t.csv").write_text(f"{header}\n{rows}", encoding="utf-8")
     code, _, err = run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *UNITS)
@@ -141,9 +135,7 @@ def test_new_takes_limits_and_names_from_a_urdf(
     assert 'velocity = ["rad/s", "rad/s", "m/s"]' in text
 
 
-def test_a_limit_that_is_given_takes_precedence_over_the_urdf(
-    run: Run, folder: Path, arm: str
-) -> None:
+def test_a_limit_that_is_given_comes_before_the_urdf(run: Run, folder: Path, arm: str) -> None:
     (folder / "t.csv").write_text("swing,turn\n10,20\n30,50\n", encoding="utf-8")
     given = ("--velocity", "30", "--velocity-unit", "deg/s", "--acceleration-unit", "deg/s^2")
     units = ("--position-unit", "deg", "--time-unit", "s")

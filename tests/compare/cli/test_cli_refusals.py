@@ -57,9 +57,7 @@ def contents(folder: Path) -> dict[str, str]:
 
 @pytest.mark.usefixtures("no_computing")
 @pytest.mark.parametrize("one", EVERY, ids=lambda one: one.name[:60])
-def test_bad_input_is_one_line(
-    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, one: Refusal
-) -> None:
+def test_bad_input(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, one: Refusal) -> None:
     for name, text in (*FILES.items(), ("deep/mine.main.plain.joint-a.json", DEEP)):
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")

@@ -62,9 +62,7 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("budget", "said"), [("400", True), ("90", False)])
-def test_evaluations_beyond_the_budget_of_one_run_are_explained(
-    budget: str, said: bool, run: Run
-) -> None:
+def test_evaluations_beyond_a_budget_are_explained(budget: str, said: bool, run: Run) -> None:
     arguments = ("bench", "suite:353-3x1-v-1", "--optimizer", "pso", "--seeds", "8")
     out = run.done(*arguments, "--budget", budget, "--no-baselines")
     (row,) = (line for line in out.splitlines() if line.startswith("pso  "))
@@ -165,9 +163,7 @@ def test_an_optimiser_that_always_fails_stands_and_is_shown_by_the_exit_code(run
         (("--against", "board", "--optimizer", "pso"), "use leaderboard"),
     ],
 )
-def test_what_cannot_stand_against_the_leaderboard(
-    asked: tuple[str, ...], said: str, run: Run
-) -> None:
+def test_what_the_leaderboard_cannot_judge(asked: tuple[str, ...], said: str, run: Run) -> None:
     code, out, err = run("bench", *asked)
     assert (code, out) == (2, "")
     assert said in err

@@ -65,9 +65,7 @@ def test_a_number_longer_than_a_certificate_may_state_ends_nothing():
     assert shipped_file(exact_problem(same)) is None
 
 
-def test_the_same_motion_within_the_same_limits_is_timed_once(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_one_motion_within_the_same_limits_is_timed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
     monkeypatch.setattr(solving, "retime", lambda *given: asked.append(given) or retime(*given))
     q = np.array([[0.13], [0.81], [0.32], [1.07]])

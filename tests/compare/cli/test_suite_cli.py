@@ -51,9 +51,7 @@ def test_json_of_the_table_and_of_one(run: Run, folder: Path) -> None:
     assert shown["verify"].startswith("python -m trajgap.verify ")
 
 
-def test_show_says_how_to_verify_and_the_command_does(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_show_says_how_to_verify_and_it_works(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     out = run.done("suite", "show", "353-irb460")
     one = load_instance("353-irb460")
     assert f"between {one.lower!r} and {one.upper!r}" in out

@@ -170,9 +170,7 @@ def test_hits_targets_and_bands_of_known_traces() -> None:
         ([np.inf, 1.0, np.inf, 2.0], (1.0, 1.5, np.inf, np.inf)),
     ],
 )
-def test_quantiles_between_two_runs_are_their_mean(
-    values: list[float], expected: tuple[float, ...]
-) -> None:
+def test_quantiles_between_runs_are_means(values: list[float], expected: tuple[float, ...]) -> None:
     assert quantiles(np.array(values), (0.0, 0.25, 0.5, 0.75)).tolist() == list(expected)
 
 

@@ -192,9 +192,7 @@ def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Processes, tmp_path
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems know no subreaper")
 @pytest.mark.parametrize("how", ["the pool ends", "the trial dies", "the parent is gone"])
-def test_a_grandchild_in_a_session_of_its_own_ends_too(
-    processes: Processes, tmp_path: Path, how: str
-) -> None:
+def test_grandchildren_in_a_session_end(processes: Processes, tmp_path: Path, how: str) -> None:
     mark = tmp_path / "mark"
     settings = canonical({"mark": str(mark), "dies": how == "the trial dies"})
     trial = small_trial("support.optimizers:leaves_a_grandchild", settings=settings, seconds=60)

@@ -50,9 +50,7 @@ def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) ->
 
 
 @pytest.mark.parametrize("name", ["index", "glossary", ID])
-def test_a_page_carries_its_icon_so_that_no_browser_asks_a_server_for_one(
-    folder: Path, name: str
-) -> None:
+def test_a_page_carries_its_icon_so_no_browser_asks_for_one(folder: Path, name: str) -> None:
     seen = Tree((folder / f"{name}.html").read_text(encoding="utf-8"))
     (icon,) = seen.every("link")
     kind, _, picture = str(icon["href"]).partition(",")
@@ -124,9 +122,7 @@ def test_tables_in_markdown_have_as_many_cells_as_columns(folder: Path) -> None:
     assert rows > 40
 
 
-def test_every_claim_stands_with_its_digits_and_verdict(
-    page: Tree, folder: Path, report: AuditReport
-) -> None:
+def test_claims_have_digits_and_verdict(page: Tree, folder: Path, report: AuditReport) -> None:
     one = report.cases[0]
     anchors = {a.get("id") for a in page.found}
     written = (folder / f"{ID}.md").read_text(encoding="utf-8")

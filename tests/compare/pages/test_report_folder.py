@@ -74,9 +74,7 @@ def refuses(report: AuditReport, out: Path, message: str) -> None:
         ("a pipe", "audit.json"),
     ],
 )
-def test_a_folder_with_other_files_is_left_alone(
-    tmp_path: Path, mark: str | None, named: str
-) -> None:
+def test_folders_of_other_files_are_left(tmp_path: Path, mark: str | None, named: str) -> None:
     out = tmp_path / "mine"
     out.mkdir()
     (out / "notes.txt").write_text("mine", encoding="utf-8")
@@ -214,9 +212,7 @@ def test_certificates_in_a_crate_prove_again(archive: Path) -> None:
         assert verify_certificate(json.loads(packed.read(name))).proves, name
 
 
-def test_a_case_file_that_has_changed_is_refused(
-    quick: AuditReport, archive: Path, file: Path
-) -> None:
+def test_a_changed_case_file_is_refused(quick: AuditReport, archive: Path, file: Path) -> None:
     del archive  # made before
     file.write_text(file.read_text("utf-8") + "\n# later\n", encoding="utf-8")
     with pytest.raises(TrajgapError, match=r"has changed since the audit began; audit it again"):

@@ -22,9 +22,7 @@ def words(picture: Picture) -> str:
     return "\n".join(t.get_text() for t in picture.findobj(Text) if t.get_visible())
 
 
-def test_the_waterfall_shows_every_value_its_evidence_and_every_reason(
-    pictures: dict[str, Picture],
-) -> None:
+def test_the_waterfall_shows_all_values_evidence_and_reasons(pictures: dict[str, Picture]) -> None:
     text = words(pictures["waterfall"])
     for step in STEPS:
         assert (step.note if isinstance(step.time, Why) else step.total()) in text

@@ -98,9 +98,7 @@ def test_blocks_add_up_and_are_replaced(rates: ModuleType) -> None:
 
 
 @pytest.mark.parametrize(("errors", "tried"), [(0, 7), (0, 10000), (2, 3625), (9, 10), (7, 7)])
-def test_limits_are_those_of_clopper_and_pearson(
-    rates: ModuleType, errors: int, tried: int
-) -> None:
+def test_limits_are_clopper_and_pearsons(rates: ModuleType, errors: int, tried: int) -> None:
     exact = binomtest(errors, tried, alternative="less").proportion_ci(0.95, method="exact")
     assert rates.upper_limit(errors, tried) == pytest.approx(exact.high, rel=1e-9)
 

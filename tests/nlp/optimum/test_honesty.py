@@ -72,9 +72,7 @@ def test_a_known_motion_is_never_undercut_by_the_answer() -> None:
     assert again.durations == pytest.approx(best.durations, rel=1e-6)
 
 
-def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_known_motion_is_kept_if_the_solver_finds_none(monkeypatch: pytest.MonkeyPatch) -> None:
     from trajgap.nlp.optimum import solver
 
     problem = TURNING

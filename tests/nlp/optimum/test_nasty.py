@@ -99,9 +99,7 @@ def near_coincident() -> Problem:
     return Problem(q, limits, quintic_spline(4, ((1, 0.0), (2, 0.0), (3, 0.0)), virtual=(1, 3)))
 
 
-def test_rounding_that_hides_a_spline_is_undecided_and_raises_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_rounding_that_hides_a_spline_leaves_it_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = near_coincident()
     hidden = [3.26329483e-07, 6.48742924, 3.10591737e-08, 3.67050879e-02]
     assert check(problem, hidden).verdict is Verdict.UNDECIDED
@@ -171,9 +169,7 @@ NEAR_QUINTIC, NEAR_REST = NEAR["quintic"][0], NEAR["rest"][0]
 @pytest.mark.parametrize(
     ("name", "speed", "bend"), [("rest", 1.875, 10.0 / np.sqrt(3.0)), ("slow", 1.5, 6.0)]
 )
-def test_blurred_rest_to_rest_answers_are_those_in_closed_form(
-    name: str, speed: float, bend: float
-) -> None:
+def test_blurred_rest_to_rest_has_closed_forms(name: str, speed: float, bend: float) -> None:
     problem, _ = NEAR[name]
     way = np.abs(np.diff(problem.waypoints, axis=0))[:, 0]
     v, a, j = problem.limits.derivatives[0]
@@ -322,9 +318,7 @@ def test_the_same_reversed_in_time() -> None:
         ([[0, 0], [0.01, 0.01], [1, 2], [1.01, 2.02], [3, 4]], cubic_spline_virtual(5), [3]),
     ],
 )
-def test_ways_that_are_short(
-    rows: list[list[float]], curve: Interpolant, segments: list[int]
-) -> None:
+def test_short_ways(rows: list[list[float]], curve: Interpolant, segments: list[int]) -> None:
     problem = Problem(np.array(rows, dtype=float), Limits(1.0, joints=2), curve)
     assert short_ways(problem) == segments
 

@@ -113,9 +113,7 @@ def test_nothing_is_called_certified_without_a_certificate() -> None:
     assert document["results"][0]["evidence"] == "best known"
 
 
-def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_certificate_that_proves_no_claim_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = copy.deepcopy(shipped(EXACT))
     wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * 2)
     monkeypatch.setattr(certificate_module, "all_shipped", lambda: (wrong,))

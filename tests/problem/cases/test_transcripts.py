@@ -28,9 +28,7 @@ def differences(old: str, new: str, words: bool = False) -> list[Difference]:
         ('units = { position = "rad" }', "", "readings.rad.units.position", None, "(absent)"),
     ],
 )
-def test_what_differs_is_named(
-    old: str, new: str, field: str, first: str | None, second: str
-) -> None:
+def test_each_difference(old: str, new: str, field: str, first: str | None, second: str) -> None:
     (found,) = differences(old, new)
     assert found.field == field
     assert found.second == second

@@ -329,9 +329,7 @@ def test_summary_reads_on_one_screen() -> None:
 
 @pytest.mark.parametrize("uneven", [False, True])
 @pytest.mark.parametrize("curve", [three_five_three(), quintic_spline(3), cubic_spline(3)])
-def test_a_reachable_total_holds_for_every_waypoint_of_the_box(
-    curve: Interpolant, uneven: bool
-) -> None:
+def test_a_reachable_total_holds_for_all_of_the_box(curve: Interpolant, uneven: bool) -> None:
     rng = np.random.default_rng(11)
     q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
     limits = UNEVEN if uneven else Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])

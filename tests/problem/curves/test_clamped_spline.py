@@ -219,9 +219,7 @@ def test_knots_are_numbers_of_one_kind_however_they_are_given():
 
 
 @pytest.mark.parametrize(("degree", "orders"), [(3, (1,)), (5, (1, 2))])
-def test_inner_knots_at_the_times_of_way_points_make_a_spline(
-    degree: int, orders: tuple[int, ...]
-) -> None:
+def test_inner_knots_at_times_of_points_make_a_spline(degree: int, orders: tuple[int, ...]) -> None:
     curve = ClampedBSpline(5, degree, end_orders=orders)
     rng = np.random.default_rng(degree)
     q, h = rng.normal(size=(5, 2)), rng.uniform(0.5, 1.5, 4)

@@ -104,9 +104,7 @@ ROOTS = st.lists(st.floats(0.0, 1.0), min_size=1, max_size=7)
 @example([0.0, 1.0], 1, 0.3)
 @example([0.999999, 1.0], 2, 0.0)
 @example([1e-9, 2e-9, 0.5], 1, 0.2)
-def test_clustered_and_multiple_turning_points(
-    roots: list[float], multiplicity: int, shift: float
-) -> None:
+def test_clusters_of_turning_points(roots: list[float], multiplicity: int, shift: float) -> None:
     # velocity = shift + ∫ Π (s − root): its turning points are the roots of odd multiplicity
     factors = (roots * multiplicity)[:7]
     p = Power.fromroots(factors).integ(k=shift)

@@ -286,9 +286,7 @@ def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("name", LONG)
-def test_gradients_by_bands_are_those_of_the_dense_system(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_gradients_by_bands_are_the_dense_ones(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     interpolant = LONG[name]
     problem, h = sample_problem(interpolant, 7, joints=3)
     curve = fit(interpolant, problem.waypoints, h)

@@ -47,9 +47,7 @@ def test_derivatives_are_within_their_bounds_of_exact_ones(name: str, spread: fl
 
 
 @pytest.mark.parametrize("name", ENDS)
-def test_a_solution_that_is_off_is_bounded_all_the_same(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_solution_that_is_off_is_bounded(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Velocities up and down by turns leave the least residual for their size."""
     curve, solver = ENDS[name], lapack.dptsv
     q, h = drawn(curve, 0.3, 4)

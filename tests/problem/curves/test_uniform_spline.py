@@ -71,9 +71,7 @@ def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
 
 @pytest.mark.parametrize("time", ["timed", NATURAL])
 @pytest.mark.parametrize("seed", range(3))
-def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(
-    seed: int, time: str
-) -> None:
+def test_derivatives_are_finite_differences_of_another_inversion(seed: int, time: str) -> None:
     problem, h = uniform(time, seed)
     other = ByScipy(problem.waypoints, h, time == NATURAL)
     trajectory = fit(problem.curve, problem.waypoints, h)

@@ -44,9 +44,7 @@ OPTIMAL = sentence("s", "optimal", "t")
         ("2.3", ClaimVerdict.NOT_CHECKABLE, "longer"),
     ],
 )
-def test_a_total_on_a_straight_line_beside_its_trapezoid(
-    value: str, verdict: ClaimVerdict, kind: str
-) -> None:
+def test_a_straight_line_beside_its_trapezoid(value: str, verdict: ClaimVerdict, kind: str) -> None:
     found = finding(along(LINE, value), "t", "TG305")
     assert (found.verdict, found.kind, found.basis) == (verdict, kind, Basis.ENCLOSURE)
 

@@ -206,9 +206,7 @@ def test_a_stretched_curve_is_smooth_only_with_the_proportions_of_its_chords() -
         assert found.kind == kind
 
 
-def test_acceleration_said_to_jump_does_in_the_reading_that_stretches(
-    motions: list[Finding],
-) -> None:
+def test_acceleration_said_to_jump_does_in_the_stretched_reading(motions: list[Finding]) -> None:
     found = {f.reading: f for f in of(motions, "TG206", "acceleration-jumps")}
     assert len(found) == 19
     for reading, one in found.items():

@@ -40,9 +40,7 @@ def test_what_is_said_of_a_total_is_said_of_its_durations_alone() -> None:
 
 
 @pytest.mark.parametrize("seed", range(28))
-def test_totals_that_are_kept_apart_and_profiles_from_rest_are_accused_of_nothing(
-    seed: int,
-) -> None:
+def test_totals_kept_apart_and_profiles_from_rest_are_accused_of_nothing(seed: int) -> None:
     found = found_by(study_of(apart(seed)), *RULES)
     assert accused(found) == []
     assert decided(found)["profile"] is decided(found)["abstract"] is ClaimVerdict.SUPPORTED
@@ -131,9 +129,7 @@ def test_a_total_that_is_the_sum_of_the_printed_durations_bounds_no_more_than_th
 
 
 @pytest.mark.parametrize(("value", "agrees"), [("2.635", True), ("2.638", False)])
-def test_a_total_of_digits_cut_off_agrees_with_the_total_of_the_whole_numbers(
-    value: str, agrees: bool
-) -> None:
+def test_a_total_cut_off_agrees_with_that_of_the_whole_numbers(value: str, agrees: bool) -> None:
     """0.6544 + 0.6408 + 0.5217 + 0.8184 is 2.6353; the digits that are left sum to 2.633."""
     table = row("table", "0.654 0.640 0.521 0.818", total="2.633", algorithm="new")
     head = total("head", value, of="table") + algorithms("new")
@@ -154,9 +150,7 @@ def test_a_total_of_digits_cut_off_agrees_with_the_total_of_the_whole_numbers(
         ("3.521", "3.523", False),  # of as many digits: neither is the other one rounded up
     ],
 )
-def test_a_total_of_fewer_digits_elsewhere_may_be_rounded_up(
-    table: str, value: str, agrees: bool
-) -> None:
+def test_a_total_of_fewer_digits_may_be_rounded_up(table: str, value: str, agrees: bool) -> None:
     text = paper([[0, 1]], row("d", table), total("head", value, of="d"), velocity=1.9)
     found = finding(text, "head", "TG105")
     assert (found.verdict is ClaimVerdict.SUPPORTED) == agrees
@@ -253,9 +247,7 @@ def test_two_algorithms_that_print_the_optimum_print_alike(
         ("1.499", "2.47", "inconsistent", ""),
     ],
 )
-def test_a_peak_is_judged_by_the_class_of_its_distance(
-    value: str, time: str, verdict: str, word: str
-) -> None:
+def test_a_peak_is_judged_by_its_distance(value: str, time: str, verdict: str, word: str) -> None:
     text = one_joint("0, 2", "1.9", time, "optimal", peak("p", "d", "velocity", value))
     found = finding(text, "p", "TG203")
     assert found.verdict == verdict

@@ -89,9 +89,7 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
     [("0, 1", "0.5 0.4", "2 durations, but the curve has 1 segment"),
      ("0, 1, 2", "0.5", "1 duration, but the curve has 2 segments")],
 )  # fmt: skip
-def test_a_table_of_another_length_loads_and_is_the_finding(
-    points: str, times: str, said: str
-) -> None:
+def test_a_table_of_wrong_length_loads_and_is_found(points: str, times: str, said: str) -> None:
     one = audited_text(one_joint(points, "1.9", times, "within_limits"))
     (found,) = [f for f in one.findings if f.claim == "d" and f.rule == "TG109"]
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)

@@ -268,9 +268,7 @@ def test_a_sampled_norm_is_not_called_equal() -> None:
         ("7.51", "supported", "", Confidence.PROVEN),
     ],
 )
-def test_what_a_slip_explains_is_named(
-    value: str, verdict: str, said: str, known: Confidence
-) -> None:
+def test_what_a_slip_explains(value: str, verdict: str, said: str, known: Confidence) -> None:
     """Degree 7 has its largest acceleration 84√5/25 of the way by the squared time, 7.5132."""
     parts = row("d", "1.00000"), peak("p", "d", "acceleration", value)
     text = paper([[0, 1]], *parts, curve={"family": "rest-to-rest", "degree": 7}, velocity=9)

@@ -133,9 +133,7 @@ def judged(*asked: Any, **more: Any) -> Finding:
         ("s-curve", "1.00", ClaimVerdict.INCONSISTENT),
     ],
 )
-def test_a_printed_total_of_a_profile_is_judged(
-    profile: str, value: str, verdict: ClaimVerdict
-) -> None:
+def test_printed_totals_of_profiles(profile: str, value: str, verdict: ClaimVerdict) -> None:
     """1 rad: half a second of 4 rad/s² each way; with jerk 0.2 + sqrt(0.04 + 1) s.
 
     With half sines a ramp of π/2 · 0.2 s.
@@ -163,9 +161,7 @@ STRAIGHT = {"path": "straight"}
         ({}, "2.30", "inconsistent", "is 15.00 % longer"),
     ],
 )
-def test_how_the_joints_go_together_is_said(
-    path: dict[str, str], value: str, verdict: str, words: str
-) -> None:
+def test_how_joints_go_together(path: dict[str, str], value: str, verdict: str, words: str) -> None:
     found = judged("trapezoidal", value, TWO, **SLOW, **path)
     assert found.verdict == verdict
     assert words in found.message
@@ -259,9 +255,7 @@ def of_profile(value: Numbers, asked: dict[str, Any], own: dict[str, Any]) -> Fi
         (["9.9", "2.0"], None, "inconsistent"),
     ],
 )
-def test_a_peak_without_a_joint_is_the_largest_of_all(
-    value: Numbers, joint: str | None, verdict: str
-) -> None:
+def test_a_peak_of_no_joint_is_the_largest(value: Numbers, joint: str | None, verdict: str) -> None:
     found = of_profile(value, {} if joint is None else {"joint": joint}, {})
     assert found.verdict == verdict, found.message
 
@@ -290,9 +284,7 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
         (None, 2, "not checkable"),
     ],
 )
-def test_one_way_serves_the_totals_of_all_limits(
-    slower: str | None, velocity: int, verdict: str
-) -> None:
+def test_one_way_serves_all_limits(slower: str | None, velocity: int, verdict: str) -> None:
     """3 rad within 2 and 4 take 2 s, and within 2 rad/s and 3.636 rad/s² 2.05 s."""
     first = total("t", "2.00", profile="trapezoidal", problem="one", **CLAIM)
     other = entry("problems", id="two", limits={"velocity": velocity, "acceleration": "3.636"})

@@ -171,9 +171,7 @@ MADE_UP = Comparison(
 )  # fmt: skip
 
 
-def test_a_study_is_cited_with_every_number_and_decides_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_study_is_cited_in_numbers_and_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     made_up = comparisons._Results(format="x", command="y", comparisons=(MADE_UP,))
     monkeypatch.setattr(comparisons, "_results", lambda: made_up)
     study = Study(hurried(PUMA), seeds=2, certify_seconds=0)

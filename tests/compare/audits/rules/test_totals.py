@@ -194,9 +194,7 @@ def test_a_percentage_is_supported_where_some_rounding_gives_it(
 
 @pytest.mark.parametrize(("slow", "fast"), PAIRS)
 @pytest.mark.parametrize("places", [0, 1, 2])
-def test_a_difference_is_supported_where_some_rounding_gives_it(
-    slow: str, fast: str, places: int
-) -> None:
+def test_a_difference_within_rounding_is_supported(slow: str, fast: str, places: int) -> None:
     true = [a - b for a, b in product(alike(slow), alike(fast))]
     for printed in near(true, places):
         held(slow, fast, printed, true, seconds=printed)

@@ -164,9 +164,7 @@ def test_a_resumed_run_keeps_the_shorter_answer_with_its_own_speeds(
     proved(found)
 
 
-def test_a_state_of_a_higher_cap_is_resumed_below_a_lower_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_state_of_a_high_cap_goes_on_below_a_lower_one(monkeypatch: pytest.MonkeyPatch) -> None:
     # Boxes that were cut beyond the total of the answer that is found later.
     with monkeypatch.context() as patch:
         stretched_first_motion(patch, None)
@@ -184,9 +182,7 @@ def test_a_state_of_a_higher_cap_is_resumed_below_a_lower_one(
     proved(found)
 
 
-def test_an_interrupt_between_answer_and_boxes_leaves_a_true_pair(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_interrupt_before_the_boxes_leaves_a_true_pair(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         stretched_first_motion(patch, 1.5)
         state = stopped_state()

@@ -72,9 +72,7 @@ def test_a_row_of_the_docs_is_proved_again() -> None:
     assert verify(json.loads(json.dumps(certificate(found)))).proves
 
 
-def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_falsified_limits_prove_too_much_and_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = certify(QUINTIC, gap=0.01)
     stated: Callable[[Any], Any] = module.stated_problem
 
