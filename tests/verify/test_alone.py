@@ -115,7 +115,7 @@ def test_it_imports_the_standard_library_and_itself() -> None:
             assert names <= {*sys.stdlib_module_names, *numpy}, path
 
 
-PAGE = ROOT / "docs" / "explanation" / "certificates.md"
+PAGE = ROOT / "docs/explanation/certificates.md"
 ROW = re.compile(r"^\| (core|`[a-z_/`, ]+`) \| ([\d,]+) \|", re.MULTILINE)
 
 

@@ -28,7 +28,7 @@ FIELDS = {
     "where": "Table 2",
     "name": "My paper",
 }
-GUIDE = (ROOT / "docs/guides/form.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs/guides/form.md").read_text("utf-8")
 MOTION = b"time,j1\n0,0\n0.5,0.25\n1,1\n1.5,1.75\n2,2\n"
 
 

@@ -110,7 +110,7 @@ SAID = {
 
 @cache
 def example(name: str) -> Case:
-    return load_case(ROOT / "docs" / "examples" / f"{name}.toml")
+    return load_case(ROOT / "docs/examples" / f"{name}.toml")
 
 
 @cache
@@ -199,7 +199,7 @@ def test_equal_segments_of_zou_2024_are_far_from_the_limits_at_39_60_s() -> None
 
 def test_a_multi_objective_total_lies_above_the_shortest_known() -> None:
     """27.744 s is a compromise: the shortest known time stands beside it as information."""
-    path = ROOT / "docs" / "examples" / f"{SLOW}.toml"
+    path = ROOT / "docs/examples" / f"{SLOW}.toml"
     one = audit(path, seeds=2, certify_seconds=0, problem="stage-2", reading="degree-7").cases[0]
     (beside,) = (f for f in one.findings if f.rule == "TG302")
     assert (beside.claim, beside.printed) == ("stage-2-shortest-time", "27.744 s")

@@ -203,7 +203,7 @@ def test_terminal_pages_and_json_say_that_there_is_no_shortest_motion(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "free.toml"
-    path.write_text(one_joint("0.3, 1.7", "inf", "2.5", "optimal"), encoding="utf-8")
+    path.write_text(one_joint("0.3, 1.7", "inf", "2.5", "optimal"), "utf-8")
     assert main(["audit", str(path), "--out", str(tmp_path / "out")]) == 0
     shown = capsys.readouterr().out
     assert f"No optimum: {SAID}." in shown

@@ -70,7 +70,7 @@ def test_bounds_are_printed_outwards_and_the_file_names_its_question(run: Run) -
     assert Fraction(row[1]) >= verdict.upper
     assert row[-1] == "certified"
     (one,) = strict(run("verify", file, "--json")[1])["verified"]
-    case = (ROOT / "problem" / "published" / f"{IRB}.toml").read_bytes()
+    case = (ROOT / "problem/published" / f"{IRB}.toml").read_bytes()
     assert one["question"]["case_sha256"] == hashlib.sha256(case).hexdigest()
     assert one["question"]["joint"] is None
 

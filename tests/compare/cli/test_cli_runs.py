@@ -16,8 +16,8 @@ from trajgap.problem.suite import load_instance
 
 PUMA = "puma560-mnam-pso-353"
 SMALL = ("--seeds", "2", "--budget", "90", "--no-baselines")
-DOC = (ROOT / "docs" / "reference" / "bench.md").read_text(encoding="utf-8")
-GUIDE = (ROOT / "docs" / "guides" / "enter-your-optimiser.md").read_text(encoding="utf-8")
+DOC = (ROOT / "docs/reference/bench.md").read_text("utf-8")
+GUIDE = (ROOT / "docs/guides/enter-your-optimiser.md").read_text("utf-8")
 
 
 def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
@@ -174,7 +174,7 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
     mine = re.search(r":caption: mine.py\n\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)
     assert mine
     assert len(mine[1].splitlines()) <= 10
-    (folder / "mine.py").write_text(mine[1], encoding="utf-8")
+    (folder / "mine.py").write_text(mine[1], "utf-8")
     code, out, err = run(
         "bench", PUMA, "--optimizer", "mine:evolve", "--seeds", "3", "--budget", "600",
         "--no-baselines",
@@ -202,7 +202,7 @@ FEW = FEW.replace('"pso"', '"pso"\nsettings = { particles = 10 }')
 @pytest.fixture(autouse=True)
 def study(folder: Path) -> Path:
     path = folder / "few.toml"
-    path.write_text(FEW, encoding="utf-8")
+    path.write_text(FEW, "utf-8")
     return path
 
 

@@ -34,7 +34,7 @@ ROWS = 'waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0"
 )
 def test_odd_problems_have_a_correct_result(run: Run, old: str, new: str, status: str) -> None:
     assert old in CASE
-    Path("odd.toml").write_text(CASE.replace(old, new), encoding="utf-8")
+    Path("odd.toml").write_text(CASE.replace(old, new), "utf-8")
     (one,) = run.document("solve", "odd.toml", "--coupling", "shared", kind="solve")["results"]
     assert one["status"] == status
     assert run("solve", "odd.toml", "--coupling", "shared")[0] == 0
@@ -101,9 +101,7 @@ def test_prose_shares_what_the_window_leaves() -> None:
 
 
 def test_nothing_from_a_file_steers_the_terminal(run: Run) -> None:
-    Path("evil.toml").write_text(
-        CASE.replace('"Mine"', '"[red]x\\u001b[31m\\u0007"'), encoding="utf-8"
-    )
+    Path("evil.toml").write_text(CASE.replace('"Mine"', '"[red]x\\u001b[31m\\u0007"'), "utf-8")
     out = run.done("show", "evil.toml")
     assert "[red]x<U+001B>[31m<U+0007>" in out
     assert "\x1b" not in out
@@ -177,7 +175,7 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
 
 
 def test_every_enum_is_documented() -> None:
-    page = (ROOT / "docs" / "reference" / "command-line.md").read_text("utf-8")
+    page = (ROOT / "docs/reference/command-line.md").read_text("utf-8")
     for name, schema in SCHEMA["$defs"].items():
         for value in schema.get("enum", ()):
             assert f"`{value}`" in page, f"{name}: {value}"

@@ -19,7 +19,7 @@ def table(tmp_path: Path) -> str:
     write_arm(tmp_path)
     rows = "\n".join(",".join(map(str, row)) for row in POINTS)
     path = tmp_path / "points.csv"
-    path.write_text(f"shoulder,elbow\n{rows}\n", encoding="utf-8")
+    path.write_text(f"shoulder,elbow\n{rows}\n", "utf-8")
     return str(path)
 
 
@@ -68,8 +68,8 @@ def test_joints_that_are_only_numbered_are_those_of_the_urdf(run: Run, table: st
     urdf, path = Path(table).parent / "arm.urdf", Path(table)
     arguments = (table, "--urdf", str(urdf), "--units", "deg", "--family", "cubic-spline-virtual")
     named = answered(run, *arguments, said="its own limit at joint shoulder; here")
-    text = path.read_text(encoding="utf-8")
-    path.write_text(text.replace("shoulder,elbow", "1,2"), encoding="utf-8")
+    text = path.read_text("utf-8")
+    path.write_text(text.replace("shoulder,elbow", "1,2"), "utf-8")
     numbered = answered(run, *arguments, said="its own limit at joint shoulder; here")
     assert numbered["total_time"] == named["total_time"]
     assert [one["joint"] for one in numbered["active"]] == [one["joint"] for one in named["active"]]

@@ -98,7 +98,7 @@ def test_the_documented_commands_verify_an_export(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """docs/suite/index.md: each command as it stands there, in the order in which it stands."""
-    page = (ROOT / "docs" / "suite" / "index.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/suite/index.md").read_text("utf-8")
     first, second, copied = re.findall(
         r"^(trajgap suite export suite\ncd suite|python -m trajgap\.verify .*|python -I .*)$",
         page, re.MULTILINE,

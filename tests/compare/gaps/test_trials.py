@@ -69,7 +69,7 @@ def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
     row = run_trial(small_trial(f"support.optimizers:{name}"))
     with (tmp_path / "returned").open("a", encoding="utf-8") as file:
         file.write(row.status)
-    assert (tmp_path / "returned").read_text(encoding="utf-8") == "finished", "by one process"
+    assert (tmp_path / "returned").read_text("utf-8") == "finished", "by one process"
     assert row.evaluations == 200 or name not in ("overspends", "scribbles", "returns_short")
     if name in ("scribbles", "returns_short", "forks"):
         assert (row.durations, row.trace) == (before.durations, before.trace)
@@ -185,7 +185,7 @@ def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Processes, tmp_path
     trial = small_trial("support.optimizers:forks_and_leaves", settings=settings, seconds=60)
     row = run_apart(trial, going_on).row
     assert row.message.endswith("its process ended 2 times (SIGKILL)")
-    left = int(mark.read_text(encoding="utf-8"))
+    left = int(mark.read_text("utf-8"))
     assert run_apart(small_trial(), going_on).row.status is RowStatus.FINISHED
     assert is_gone(left)
 
@@ -197,7 +197,7 @@ def test_grandchildren_in_a_session_end(processes: Processes, tmp_path: Path, ho
     settings = canonical({"mark": str(mark), "dies": how == "the trial dies"})
     trial = small_trial("support.optimizers:leaves_a_grandchild", settings=settings, seconds=60)
     row = run_apart(trial, processes).row
-    left = [int(line) for line in mark.read_text(encoding="utf-8").split()]
+    left = [int(line) for line in mark.read_text("utf-8").split()]
     if how == "the trial dies":
         assert row.message.endswith("its process ended 2 times (SIGKILL)")
         assert len(left) == 2

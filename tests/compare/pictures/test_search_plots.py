@@ -150,7 +150,7 @@ def test_shares_whose_path_leaves_its_range_are_hatched() -> None:
 
 
 def test_the_dark_colours_are_those_of_the_pages() -> None:
-    style = (ROOT / "compare/pages/templates/style.css").read_text(encoding="utf-8")
+    style = (ROOT / "compare/pages/templates/style.css").read_text("utf-8")
     dark = style.split("prefers-color-scheme: dark")[1].split("}")[0]
     for name, colour in DARK.items():
         assert f"--{name}: {colour};" in dark

@@ -13,7 +13,7 @@ from trajgap.problem.suite import list_instances, select_curve
 
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
 def test_a_place_that_every_row_shares_is_said_once(name):
-    case = Results(ROOT / "docs" / "results").audited(name)
+    case = Results(ROOT / "docs/results").audited(name)
     *said, shown, ids = readings_of(case)
     outcomes = case.readings.outcomes
     assert ids.title == "Ids of the readings"

@@ -7,7 +7,7 @@ from trajgap.compare.documents import StatedSource, Why, known
 from trajgap.compare.sphinx import Results, paper_row, paper_rows, papers_drawn
 from trajgap.compare.sphinx.papers import Distance, cited
 
-RESULTS = Results(ROOT / "docs" / "results")
+RESULTS = Results(ROOT / "docs/results")
 
 
 def source(authors: str, year: int | None = 2024, title: str = "On time") -> StatedSource:

@@ -177,7 +177,7 @@ def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
 
 def page() -> dict[str, list[str]]:
     """Rows of the page's table by the name of the problem."""
-    text = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
+    text = (ROOT / "docs/reference/interpolants.md").read_text()
     lines = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| step")]
     return {cells[0].strip(): [cell.strip() for cell in cells[1:]] for cells in lines}
 

@@ -45,7 +45,7 @@ certificate_module = import_module("trajgap.nlp.proofs.document")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = Pair("limit-80", "waypoints-rad")
 EXACT = COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"]
-VERDICTS = (ROOT / "docs" / "explanation" / "verdicts.md").read_text("utf-8")
+VERDICTS = (ROOT / "docs/explanation/verdicts.md").read_text("utf-8")
 
 
 @pytest.fixture

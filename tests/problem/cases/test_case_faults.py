@@ -30,7 +30,7 @@ def test_each_fault_has_its_line(one: Refusal) -> None:
 def test_small_angles_and_small_lower_bounds_are_read():
     text = BASE.replace('"10.5"', '"6.1e-17"').replace("lower = 0.1", "lower = 1e-300")
     assert parse_case(text, "base.toml").problem("one", "rad").waypoints[1, 0] == 6.1e-17
-    digits = (ROOT / "docs/reference/case-files.md").read_text(encoding="utf-8")
+    digits = (ROOT / "docs/reference/case-files.md").read_text("utf-8")
     assert f"must lie between {1 / _LARGEST:g} and {_LARGEST:g}" in digits
 
 

@@ -94,10 +94,7 @@ def test_any_polynomial(coefficients: list[float]) -> None:
         assert (np.abs(peaks - expected) <= room).all()
 
 
-ROOTS = st.lists(st.floats(0.0, 1.0), min_size=1, max_size=7)
-
-
-@given(ROOTS, st.integers(1, 3), st.floats(-2, 2))
+@given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=7), st.integers(1, 3), st.floats(-2, 2))
 @example([0.3, 0.3], 2, 0.4)
 @example([0.5], 3, 0.0)
 @example([0.25, 0.75], 1, -0.1)

@@ -20,7 +20,7 @@ from trajgap.problem.printed.rounded import Printed
 from trajgap.problem.robots.chain import Convention, JointKind, forward_kinematics
 from trajgap.problem.robots.dh import DhTable, PiMultiple, read_angle
 
-ROBOTS = ROOT / "problem" / "robots"
+ROBOTS = ROOT / "problem/robots"
 
 TABLE = """
 where = "Table 9"
@@ -130,7 +130,7 @@ def test_rounding_is_no_less_than_any_rounded_table_shows():
     assert bound == pytest.approx(5 * 0.5e-4, rel=1e-9)
     rng = np.random.default_rng(2)
     q = rng.uniform(-3, 3, (50, 6))
-    text = (ROBOTS / "z1.toml").read_text(encoding="utf-8")
+    text = (ROBOTS / "z1.toml").read_text("utf-8")
     other = (
         text.replace('"0.1305"', "0.13054")
         .replace('"0.2253"', "0.22526")

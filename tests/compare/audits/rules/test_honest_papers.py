@@ -291,11 +291,9 @@ def test_durations_may_all_have_been_rounded_up(value: str, verdict: str) -> Non
     assert finding(text, "d", "TG101").verdict == verdict
 
 
-UNCLEAR = ("0.962", Severity.WARNING, Scope.SOME)
-
-
 @pytest.mark.parametrize(
-    ("time", "severity", "scope"), [UNCLEAR, ("0.95", Severity.ERROR, Scope.ALL)]
+    ("time", "severity", "scope"),
+    [("0.962", Severity.WARNING, Scope.SOME), ("0.95", Severity.ERROR, Scope.ALL)],
 )
 def test_a_proof_is_an_error_only_where_every_reading_is_against_the_claim(
     time: str, severity: Severity, scope: Scope

@@ -285,7 +285,7 @@ def test_the_palletiser_is_inconsistent_under_both_units(palletiser, unit):
 
 
 def test_the_page_prints_these_numbers(palletiser):
-    page = (ROOT / "docs" / "reference" / "robots.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/reference/robots.md").read_text("utf-8")
     rows = dict(re.findall(r"^\| ([^|]+?) \| (\d.*) \|$", page, re.MULTILINE))
     for unit in ("rad", "deg"):
         message = palletiser[f"waypoints-{unit}"].message

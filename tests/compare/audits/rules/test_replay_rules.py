@@ -212,5 +212,5 @@ def test_committed_results_are_about_claims_and_algorithms_that_exist(one: Compa
 
 
 def test_the_page_holds_the_committed_numbers() -> None:
-    page = (ROOT / "docs" / "measurements" / "comparisons.md").read_text("utf-8")
+    page = (ROOT / "docs/measurements/comparisons.md").read_text("utf-8")
     assert benchmark("comparison_results")["filled"](page, all_comparisons()) == page

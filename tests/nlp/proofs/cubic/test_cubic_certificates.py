@@ -87,7 +87,7 @@ def test_weights_without_the_target_prove_nothing_about_it() -> None:
     assert prover.bound(box, replace(found, target={0: 0})) is None
 
 
-EXAMPLE = ROOT / "docs" / "examples" / "gasparetto-zanotto2008.toml"
+EXAMPLE = ROOT / "docs/examples/gasparetto-zanotto2008.toml"
 
 
 @lru_cache(maxsize=1)
@@ -157,7 +157,7 @@ def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     # The paper's compromise between time and jerk is not the least time, and lies above.
     assert verdict.upper < Fraction("9.05")
     assert len(json.dumps(document)) < 200_000
-    page = (ROOT / "docs" / "explanation" / "certificates-cubic.md").read_text("utf-8")
+    page = (ROOT / "docs/explanation/certificates-cubic.md").read_text("utf-8")
     line = next(x for x in page.splitlines() if x.startswith(f"| `{EXAMPLE.stem}` | 5 |"))
     printed = [Fraction(cell.strip()) for cell in line.split("|")[3:5]]
     assert [float(x) for x in printed] == pytest.approx(

@@ -10,7 +10,7 @@ from trajgap.nlp import solve
 def test_the_page_shows_what_the_file_of_the_runs_holds() -> None:
     module = benchmark("quintic_bounds")
     found = module["rows"]()
-    page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
+    page = (ROOT / "docs/explanation/certificates-quintic.md").read_text("utf-8")
     for line in (*module["summary"](found), *module["each"](found)):
         assert line.startswith("|---") or f"\n{line}\n" in page
     problems = benchmark("quintic_instances")["instances"]()
@@ -54,6 +54,4 @@ def test_near_the_answer_the_linear_program_says_little_more_than_the_box() -> N
     tight = reference["nodal_tightened"](single, box, lambda: False)
     better, _ = reference["least"](whole.program(tight), cost)
     sentence = f"{plain / upper:.3f} of the answer's, {better / upper:.3f} with"
-    assert sentence in (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text(
-        "utf-8"
-    )
+    assert sentence in (ROOT / "docs/explanation/certificates-quintic.md").read_text("utf-8")

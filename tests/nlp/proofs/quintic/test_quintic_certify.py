@@ -62,7 +62,7 @@ def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float])
 
 @pytest.mark.slow
 def test_a_row_of_the_docs_is_proved_again() -> None:
-    page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
+    page = (ROOT / "docs/explanation/certificates-quintic.md").read_text("utf-8")
     problems = benchmark("quintic_instances")["instances"]()
     assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
     problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
