@@ -154,7 +154,7 @@ def test_fitness_is_what_the_checker_calls_feasible_and_tight_time(
     problem: Problem, shorten: bool
 ) -> None:
     """Where a joint swings beyond a position limit, no stretch repairs it."""
-    problem = replace(problem, **{"duration_lower": 0.0, "duration_upper": np.inf})
+    problem = replace(problem, duration_lower=0.0, duration_upper=np.inf)
     rng = np.random.default_rng(5)
     h = rng.uniform(0.5, 1.5, (60, 3)) * np.exp(rng.uniform(-1.0, 2.0, (60, 1)))
     judge, penal = Stretch(problem, shorten=shorten), DeathPenalty(problem)(h)

@@ -216,12 +216,10 @@ def test_what_no_small_change_explains_has_no_explanation() -> None:
 
 
 @pytest.mark.parametrize(("limit", "explained"), [(2.035, True), (2.03, False)])
-def test_limits_that_hold_at_samples_are_explained_by_them(limit: float, explained: bool) -> None:
+def test_limits_that_hold_at_samples_are_explained_by_them(limit: float, said: bool) -> None:
     """A cubic spline peaks at 2.0431 rad/s, and at 2.0326 rad/s at ten steps a segment."""
     curve = {"family": "cubic-spline"}
     one = judged([0.1, 1.3, 0.9], limit, "0.83000 0.71000", "1.54000", curve=curve)
     (cause,) = one.causes
     assert cause.rule == "TG201"
-    assert (
-        any("at ten samples per segment none" in e.change for e in cause.explanations) is explained
-    )
+    assert any("at ten samples per segment none" in e.change for e in cause.explanations) is said

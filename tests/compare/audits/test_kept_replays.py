@@ -7,7 +7,6 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from support.command_line import IRB
 from support.studies import hurried
@@ -30,9 +29,7 @@ def shifted_problem(shift: float = 0.0, **other: Any) -> Problem:
 def same(one: Run, other: Run) -> bool:
     """Whether two runs agree in every field, arrays to the last bit."""
     pairs = [(getattr(one, f.name), getattr(other, f.name)) for f in fields(one)]
-    return all(
-        a.tobytes() == b.tobytes() if isinstance(a, np.ndarray) else a == b for a, b in pairs
-    )
+    return all(a.tobytes() == b.tobytes() if hasattr(a, "tobytes") else a == b for a, b in pairs)
 
 
 class Searches:
@@ -159,11 +156,9 @@ def test_a_run_that_no_longer_comes_out_discards_its_group(tmp_path, monkeypatch
     searches = Searches(tmp_path)
     searches.runs(some())
 
-    def elsewhere(method: Any, questions: Sequence[AskedRun]) -> list[Run]:
+    def elsewhere(method: Any, asked: Sequence[AskedRun]) -> list[Run]:
         # As another processor may compute it: one evaluation more.
-        return [
-            replace(run, evaluations=run.evaluations + 1) for run in run_asked(method, questions)
-        ]
+        return [replace(run, evaluations=run.evaluations + 1) for run in run_asked(method, asked)]
 
     monkeypatch.setattr(kept_replays, "run_asked", elsewhere)
     searches.runs(some())

@@ -44,9 +44,7 @@ def test_the_urdf_limits_the_joints_and_where_they_go(run: Run, table: str) -> N
     urdf = str(Path(table).parent / "arm.urdf")
     curve = ("--units", "deg", "--family", "quintic-spline")
     # The total is that of the stricter problem, and says so.
-    found = answered(
-        run, table, "--urdf", urdf, *curve, said="its own limit at joint shoulder; here"
-    )
+    found = answered(run, table, "--urdf", urdf, *curve, said="its own limit at joint shoulder")
     limits = read_urdf(Path(urdf)).for_joints(("shoulder", "elbow"))
     problem = Problem(np.radians(POINTS), limits.two_sided, quintic_spline(2))
     best = solve(problem, prove=0)
@@ -91,7 +89,5 @@ def test_what_cannot_be_used_is_refused(
 
 
 def test_a_case_states_its_own_limits_and_curve(run: Run) -> None:
-    assert_refused(
-        run("solve", "mine.toml", "--velocity", "1"), "--velocity", "table of way-points"
-    )
+    assert_refused(run("solve", "mine.toml", "--velocity", "1"), "--velocity", "of way-points")
     assert_refused(run("solve", "mine.toml", "--family", "3-5-3"), "--family")

@@ -102,10 +102,7 @@ def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ()
 
 def test_whole_sentences_stand_in_the_open_one_at_least() -> None:
     assert opened(("One two three.", "Four."), 2) == (("One two three.",), ("Four.",))
-    assert opened(("One two.", "Three.", "Four five."), 3) == (
-        ("One two.", "Three."),
-        ("Four five.",),
-    )
+    assert opened(("One two.", "Three.", "Four."), 3) == (("One two.", "Three."), ("Four.",))
     long = ("It breaks a limit.", *["Word after word."] * 30)
     assert judged(R, sentences=long).opening == " ".join(long[:19])
     assert judged(R, sentences=long[:3]).opening is None
@@ -156,7 +153,7 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
     ],
 )
 def test_a_gap_in_words(lowest: float, highest: float, words: str) -> None:
-    gap = Gap(
+    one = Gap(
         kind=GapKind.OPTIMALITY, lowest=lowest, highest=highest, reference=Reference(upper=1.0)
     )
-    assert apart(gap) == words
+    assert apart(one) == words

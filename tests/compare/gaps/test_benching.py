@@ -299,10 +299,8 @@ def test_failing_is_not_cheap() -> None:
 def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     result = measure_gaps(runs, float(EXACT.sum()))
     assert_valid(json.loads(json_text(BenchDocument(results=(result,)))), "bench")
-    picture = bench_picture(result, runs)
-    assert all(
-        f"{one.optimizer}: {one.runs} run" in picture.description for one in result.standings
-    )
+    drawn = bench_picture(result, runs)
+    assert all(f"{one.optimizer}: {one.runs} run" in drawn.description for one in result.standings)
     out = tmp_path / "out"
     write_bench([(result, runs)], out)
     page = (out / "index.html").read_text("utf-8")

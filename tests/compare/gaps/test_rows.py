@@ -365,12 +365,12 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
     data = manager.load(monotonic=False)
     for run, row in zip(runs, [rows[3], rows[0], rows[1], more[0]], strict=True):
         lines = data.filter(data["data_id"] == run["data_id"])
-        points = list(zip(lines["evaluations"], lines["raw_y"], strict=True))
-        assert points[0][0] == 1
-        assert points[-1][0] == row.evaluations
-        assert [p for p in points if p in row.trace] == list(row.trace)
+        dots = list(zip(lines["evaluations"], lines["raw_y"], strict=True))
+        assert dots[0][0] == 1
+        assert dots[-1][0] == row.evaluations
+        assert [p for p in dots if p in row.trace] == list(row.trace)
         assert all(
-            y == sys.float_info.max for at, y in points if not row.trace or at < row.trace[0][0]
+            y == sys.float_info.max for at, y in dots if not row.trace or at < row.trace[0][0]
         )
 
 

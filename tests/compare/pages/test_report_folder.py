@@ -25,10 +25,8 @@ from trajgap.problem import TrajgapError, load_case
 from trajgap.verify import verify_certificate
 
 
-def content(folder: Path) -> dict[str, bytes]:
-    return {
-        p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()
-    }
+def content(top: Path) -> dict[str, bytes]:
+    return {p.relative_to(top).as_posix(): p.read_bytes() for p in top.rglob("*") if p.is_file()}
 
 
 @pytest.mark.slow

@@ -243,10 +243,8 @@ def test_dots_that_say_nothing_of_a_limit_are_left_out() -> None:
     time = np.linspace(0.0, 1.0, 501)
     samples = Samples(("one",), time, np.sin(time)[:, None], noise=1e-3)
     _, _, grid = drawn(samples, JointLimits.from_values(("one",), velocity=2.0, jerk=10.0))
-    velocity, _, jerk = (
-        next(a for a in grid[0][r].lines if a.get_marker() == ".") for r in (1, 2, 3)
-    )
-    assert len(velocity.get_xdata()) == 500  # known to within 1 rad/s
+    speed, _, jerk = (next(a for a in grid[0][r].lines if a.get_marker() == ".") for r in (1, 2, 3))
+    assert len(speed.get_xdata()) == 500  # known to within 1 rad/s
     assert len(jerk.get_xdata()) == 0
     assert spans(grid[0][1], ORANGE) == []
 

@@ -86,10 +86,8 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     assert solution.check.limits is Verdict.PASS
     assert solution.kkt_residual <= 1e-8
     if kind[3] == "stretched":
-        expected = solve_in_closed_form(
-            problem.curve, problem.waypoints, problem.limits.derivatives
-        )
-        assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9)
+        wanted = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+        assert solution.total_time == pytest.approx(wanted.sum(), rel=1e-9)
         return
     # No nearby durations, stretched until they keep the limits, are shorter.
     rng = np.random.default_rng(3)

@@ -294,12 +294,12 @@ def test_a_stopped_run_goes_on_where_it_stopped(name: str, monkeypatch: pytest.M
         certify(problem, subject=subject, resume=state)
 
 
-def through(curve: Curve, limits: Limits | None = None, **more: Any) -> Problem:
+def through(curve: Curve, within: Limits | None = None, **more: Any) -> Problem:
     """A problem of one joint that goes to and fro."""
     count = curve.segments + 1 - len(getattr(curve, "virtual", ()))
     way = np.resize([0.2, 1.1, -0.4, 0.7], (count, 1))
     return Problem(
-        **{"waypoints": way, "limits": limits or Limits(1.0, 2.0), "curve": curve, **more}
+        **{"waypoints": way, "limits": within or Limits(1.0, 2.0), "curve": curve, **more}
     )
 
 

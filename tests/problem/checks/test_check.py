@@ -92,10 +92,10 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
     """Of unrelated polynomials, by scipy's values at the two ends of every break."""
     rng = np.random.default_rng(pieces)
     problem, _ = sample_problem(rest_to_rest(pieces, 3), pieces)
-    motion = Trajectory(
+    curve = Trajectory(
         rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3)), (3,) * pieces
     )
-    held, at = motion.polynomial, motion.breaks[1:-1]
+    held, at = curve.polynomial, curve.breaks[1:-1]
     steps = np.array([held(at, r) - held(np.nextafter(at, 0.0), r) for r in range(3)])
     for _ in range(9):
         error = rng.uniform(0.0, 6.0, (pieces, 4, 3)) * rng.uniform(0.0, 1.0, (pieces, 1, 1))
@@ -104,7 +104,7 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
             (b + 1, problem.joints[j], r, pytest.approx(at[b]), pytest.approx(steps[r, b, j]))
             for b, j, r in np.argwhere((np.abs(steps) > both).transpose(1, 2, 0)).tolist()
         ]
-        found, _ = jumps_of(problem, motion, error)
+        found, _ = jumps_of(problem, curve, error)
         assert [(j.break_index, j.joint, j.order, j.time, j.size) for j in found] == expected
         assert len(expected) > 0 or pieces < 3
 

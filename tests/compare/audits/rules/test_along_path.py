@@ -110,22 +110,20 @@ def test_sampled_points_leave_open_what_two_splines_differ() -> None:
 
 def honest(seed: int) -> str:
     """A paper that rounds TOPPRA's time along its path, and calls it optimal."""
-    random = np.random.default_rng(seed)
-    joints, points = int(random.integers(2, 4)), 400
-    waves, turns, phases = (
-        random.uniform(*ends, (3, joints)) for ends in ((-1, 1), (1, 5), (0, 6))
-    )
+    rng = np.random.default_rng(seed)
+    joints, points = int(rng.integers(2, 4)), 400
+    sizes, bends, shifts = (rng.uniform(*ends, (3, joints)) for ends in ((-1, 1), (1, 5), (0, 6)))
 
     def path(count: int) -> np.ndarray:
         u = np.linspace(0.0, 1.0, count)[:, None]
-        return sum(waves[k] / (k + 1) * np.sin(turns[k] * u + phases[k]) for k in range(3))
+        return sum(sizes[k] / (k + 1) * np.sin(bends[k] * u + shifts[k]) for k in range(3))
 
-    caps = random.uniform(0.3, 3.0, joints), random.uniform(0.5, 8.0, joints)
+    caps = rng.uniform(0.3, 3.0, joints), rng.uniform(0.5, 8.0, joints)
     dense = fit(quintic_spline(points, ((3, 0.0), (4, 0.0))), path(points + 1), np.ones(points))
     found = retime(dense, Limits(*caps), end_speeds=(0.0, 0.0), gridpoints=(12, 25, 50))
     assert found.applicable
-    places, own, few = random.integers(4, 9), random.integers(2, 5), random.integers(2, 4)
-    rows = [[f"{v:.{places}f}" for v in row] for row in path(int(random.integers(30, 90))).T]
+    places, own, few = rng.integers(4, 9), rng.integers(2, 5), rng.integers(2, 4)
+    rows = [[f"{v:.{places}f}" for v in row] for row in path(int(rng.integers(30, 90))).T]
     digits = [[f"{v:.{few}f}" for v in row] for row in caps]
     spline = {"family": "quintic-spline", "end_orders": [3, 4]} if seed % 2 else NATURAL
     limits = dict(zip(("velocity", "acceleration"), digits, strict=True))

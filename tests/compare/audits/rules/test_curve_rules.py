@@ -41,10 +41,10 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 def vertices_on(curve: dict[str, Any], *more: str) -> list[Finding]:
     """Of four way-points, and vertices that are those of no uniform cubic B-spline."""
-    printed = claim(
+    stated = claim(
         "v", "control_vertices", joint_rows=[["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
     )
-    text = paper(["0.1 1.2 -0.4 0.7"], printed, *more, curve=curve, velocity=3)
+    text = paper(["0.1 1.2 -0.4 0.7"], stated, *more, curve=curve, velocity=3)
     return judged(study_of(text), "TG205")
 
 

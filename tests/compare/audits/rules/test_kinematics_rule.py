@@ -163,9 +163,7 @@ THREE = {"waypoints": {"waypoint_rows": OTHER[:3]}, "interpolant": {"family": "c
 
 def test_problems_with_other_way_points_are_judged_apart() -> None:
     ways = {"waypoints": {"waypoint_rows": OTHER}}
-    parts = (
-        entry("problems", id=k, **v) for k, v in (("same", {}), ("other", ways), ("again", {}))
-    )
+    parts = (entry("problems", id=k, **v) for k, v in (("same", {}), ("other", ways), ("more", {})))
     text = case_text(PLACES, TABLE, *parts, column())
     assert {f.problem: f.verdict for f in findings(text)} == {
         "same": "supported", "other": "inconsistent"

@@ -114,15 +114,12 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
     assert "(3 settings), medians are 3.3650 to 3.8850 s" in said
     assert "nearest to the printed total is 3.5150 s, with inertia = 0.884." in said
     assert "every one of these settings" not in said
-    assert " ".join(_typical(spreads, 4.0, 4.001)).endswith(
-        "every one of these settings is shorter."
-    )
-    assert " ".join(_typical(spreads, 3.0, 3.001)).endswith(
-        "every one of these settings is longer."
-    )
-    assert " ".join(_typical(spreads, 3.4, 3.401)).endswith(
-        "all runs are shorter or all are longer than the printed total."
-    )
+    for low, end in (
+        (4.0, "every one of these settings is shorter."),
+        (3.0, "every one of these settings is longer."),
+        (3.4, "all runs are shorter or all are longer than the printed total."),
+    ):
+        assert " ".join(_typical(spreads, low, low + 0.001)).endswith(end)
     assert not [*_typical({LISTED: spreads[LISTED]}, 3.5, 3.6)]
 
 
