@@ -234,9 +234,7 @@ def test_results_that_cannot_be_sent_are_named() -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_what_all_processes_need_is_compiled_before_they_start(
-    workers: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_all_need_is_compiled_before(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     loop = import_module("trajgap.heuristics.loop")
     calls: list[object] = []
 

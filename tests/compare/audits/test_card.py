@@ -198,9 +198,7 @@ ONE = "Under “angles in rad, limits in rad/s and rad/s², stretched segments�
         (broken(IDS[:1]), IDS[:1], "Under the implausible “angles in rad"),
     ],
 )
-def test_a_sentence_says_under_how_many_readings_it_holds(
-    one: Cause, far: tuple[str, ...], wanted: str
-) -> None:
+def test_how_many_readings_a_sentence_names(one: Cause, far: tuple[str, ...], wanted: str) -> None:
     (said,) = plainly(CASE, one, far)
     assert wanted in said
     assert ("nder" in said) == ("nder" in wanted)

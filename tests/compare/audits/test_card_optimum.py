@@ -27,9 +27,7 @@ def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity
     ("coupling", "said"),
     [("per-joint", "4.0000 to 4.0010 s from optimising each joint separately"), ("shared", "the ")],
 )
-def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima(
-    coupling: str, said: str
-) -> None:
+def test_a_total_of_joints_planned_alone_has_their_own_optima(coupling: str, said: str) -> None:
     """At 1.5 rad/s each joint needs 3 s, in 2 and 1 s or in 1 and 2 s, and the longest durations
     take 4 s, as all joints together do; up to 4.001 s while each joint stays within half a printed
     digit, 0.0005 s, of its own."""

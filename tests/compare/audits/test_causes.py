@@ -215,7 +215,7 @@ def test_what_no_small_change_explains_has_no_explanation() -> None:
     assert judged([0, 3], 1.9, "0.100", "0.100").causes[0].explanations == ()
 
 
-@pytest.mark.parametrize(("limit", "explained"), [(2.035, True), (2.03, False)])
+@pytest.mark.parametrize(("limit", "said"), [(2.035, True), (2.03, False)])
 def test_limits_that_hold_at_samples_are_explained_by_them(limit: float, said: bool) -> None:
     """A cubic spline peaks at 2.0431 rad/s, and at 2.0326 rad/s at ten steps a segment."""
     curve = {"family": "cubic-spline"}

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from support.command_line import AUDITS, CASE, PAGES, Run
@@ -48,10 +49,7 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that computes is ended."""
-
-    def compute(*_: object, **__: object) -> None:
-        raise AssertionError("computes")
-
+    compute = Mock(side_effect=AssertionError("computes"))
     for name in (
         "solve_command.solve_exactly",
         "solve_command.solve_per_joint",

@@ -82,12 +82,8 @@ def test_a_crate_needs_its_package(run: Run, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_no_command_says_how_to_begin_and_prints_the_help(run: Run) -> None:
     begin, _, help_ = run()[1].partition("\n\n")
-    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == [
-        "audit",
-        "new",
-        "check",
-        "solve",
-    ]
+    first = ["audit", "new", "check", "solve"]
+    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == first
     assert help_ == run("--help")[1]
 
 

@@ -105,9 +105,7 @@ def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
     assert not Path(state).exists(), "a finished certificate needs none"
 
 
-def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_refused_proof_is_not_called_certified(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     module = import_module("trajgap.nlp.proofs.declared.certifier")
     real = module._kind
 

@@ -175,9 +175,7 @@ def test_a_joint_that_lacks_a_limit_which_others_have(run: Run, folder: Path) ->
     assert_refused(ended, "arm.urdf", "velocity of joint swing: no limit is stated")
 
 
-def test_new_tells_all_missing_units_and_wrong_options_at_once(
-    run: Run, table: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_new_tells_faults_at_once(run: Run, table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(""))
     given = ("--velocity", "2", "--jerk", "1,2,3,4,5,6,7", "--family", "bezier")
     ended = run("new", "out.toml", "--from", table, *given)

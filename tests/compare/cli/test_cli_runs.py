@@ -5,11 +5,13 @@ import os
 import re
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from support.checkout import ROOT
 from support.command_line import Run, on_terminal
 from support.small_studies import HEAD, optimizers
+from trajgap.compare import gaps
 from trajgap.compare.documents import percent
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
@@ -230,28 +232,16 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
 
 
 def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:
-    study.write_text(
-        FEW.replace("support.optimizers:raises", "support.optimizers:raises_at_times").replace(
-            "seeds = 2", "seeds = 8"
-        ),
-        encoding="utf-8",
-    )
+    text = FEW.replace("optimizers:raises", "optimizers:raises_at_times")
+    study.write_text(text.replace("seeds = 2", "seeds = 8"), "utf-8")
     out = run.done("study", "few.toml", "--workers", "1")
     assert "times: ZeroDivisionError: at times" in out
 
 
-def test_the_command_that_goes_on_still_exports(
-    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from trajgap.compare import gaps
-
-    def interrupted(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(gaps, "run_study", interrupted)
-    code, out, err = run(
-        "study", "few.toml", "--export", "a b.csv", "--export", "few.ioh", "--workers", "1"
-    )
+def test_what_goes_on_exports(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gaps, "run_study", Mock(side_effect=KeyboardInterrupt))
+    exports = ("--export", "a b.csv", "--export", "few.ioh")
+    code, out, err = run("study", "few.toml", *exports, "--workers", "1")
     assert (code, out) == (130, "")
     assert "`trajgap study few.toml --export 'a b.csv' --export few.ioh` continues" in err
     assert not (folder / "few.ioh").exists()

@@ -62,9 +62,7 @@ def test_reading_a_file_is_part_of_the_time(run: Run) -> None:
         assert one["worth"] == "out of time"
 
 
-def test_what_cannot_be_proved_again_in_time_is_not_thrown_away(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_proved_again_in_time_stays(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """Judging an earlier certificate is within the limit, too: it is kept if nobody altered it."""
     path = Path(f"trajgap-certificates/{NAME}.json")
     path.parent.mkdir()

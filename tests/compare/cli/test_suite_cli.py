@@ -83,9 +83,7 @@ def test_an_export_is_whole_and_needs_no_trajgap(run: Run, folder: Path) -> None
     assert run("suite", "export", "all")[0] == 0, "an earlier export is replaced"
 
 
-def test_show_of_an_instance_whose_certificate_is_not_shipped(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_show_without_a_shipped_certificate(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(BenchmarkInstance, "certificate_file", lambda _: None)
     one = load_instance("353-irb460")
     out = run.done("suite", "show", one.name)

@@ -143,9 +143,7 @@ def test_claims_have_digits_and_verdict(page: Tree, folder: Path, report: AuditR
     assert "0.7615, 0.3854, 0.4572 s" in page.words
 
 
-def test_the_card_stands_on_top_in_page_markdown_and_index(
-    page: Tree, folder: Path, report: AuditReport
-) -> None:
+def test_the_card_is_on_top_of_all_pages(page: Tree, folder: Path, report: AuditReport) -> None:
     card = report.cases[0].card
     assert card.words <= CARD_WORDS
     first = page.words.index(flat(card.limits))

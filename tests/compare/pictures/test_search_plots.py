@@ -85,9 +85,7 @@ def test_runs_without_an_answer_are_counted_not_drawn(runs: dict[str, list[Run]]
     assert "1 runs, none with an answer" in words(picture)
 
 
-def test_convergence_needs_runs_and_one_optimum_for_each_problem(
-    joint_runs: dict[str, list[JointRuns]],
-) -> None:
+def test_convergence_needs_runs_and_all_optima(joint_runs: dict[str, list[JointRuns]]) -> None:
     for runs, optima, said in (
         ({}, 1.0, "convergence: no runs to draw"),
         (joint_runs, 1.0, "1 optima for 2 searched problems; give one each"),

@@ -202,9 +202,7 @@ SLOW = [pytest.param(number, 20, 15, 9, marks=pytest.mark.slow) for number in (3
 
 
 @pytest.mark.parametrize(("number", "count", "hits", "seed"), [(15, 4, 4, 8), *SLOW])
-def test_single_starts_and_the_default_reach_the_same_total(
-    number: int, count: int, hits: int, seed: int
-) -> None:
+def test_single_starts_reach_the_same_total(number: int, count: int, hits: int, seed: int) -> None:
     problem = INSTANCES[number]
     usual = solve(problem)
     assert usual.status is Status.CONVERGED

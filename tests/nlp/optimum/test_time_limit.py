@@ -132,9 +132,7 @@ def test_the_windows_of_a_proof_look_at_the_clock() -> None:
 
 
 @pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
-def test_a_solve_ends_soon_after_its_time_and_says_so(
-    monkeypatch: pytest.MonkeyPatch, problem: Problem
-) -> None:
+def test_a_solve_ends_soon_after_time(monkeypatch: pytest.MonkeyPatch, problem: Problem) -> None:
     ticks = ticking(monkeypatch)
     whole = solve(problem, seconds=1e9)
     needed = ticks.looks

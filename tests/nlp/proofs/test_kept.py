@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from support.certificate_kinds import KINDS
@@ -214,10 +215,7 @@ def test_where_nothing_can_be_written_the_answer_is_the_same(tmp_path, monkeypat
     cold = certify(shifted_problem(), gap=GAP)
     (tmp_path / "file").write_text("in the way")
     assert alike(cold, certify(shifted_problem(), gap=GAP, cache=tmp_path / "file" / "folder"))
-
-    def full(path, text):
-        raise OSError(28, "No space left on device")
-
+    full = Mock(side_effect=OSError(28, "No space left on device"))
     monkeypatch.setattr(kept_files, "replace_file", full)
     assert alike(cold, certify(shifted_problem(), gap=GAP, cache=tmp_path / "full"))
     assert not (tmp_path / "full").exists()

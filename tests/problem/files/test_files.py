@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from trajgap.problem import (
@@ -136,12 +137,8 @@ def test_a_new_file_is_complete_or_absent(tmp_path: Path) -> None:
 @pytest.mark.parametrize("links", [True, False])
 def test_no_new_file_replaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, links: bool) -> None:
     """With hard links, and where they are not offered."""
-
-    def refuse(*_: object) -> None:
-        raise PermissionError(1, "not offered")
-
     if not links:
-        monkeypatch.setattr(os, "link", refuse)
+        monkeypatch.setattr(os, "link", Mock(side_effect=PermissionError(1, "not offered")))
     with new_file(tmp_path / "a") as write:
         write("text")
     assert (tmp_path / "a").read_text() == "text"

@@ -122,9 +122,7 @@ def test_what_samples_give_is_supported_and_digits_leave_room() -> None:
 
 @pytest.mark.parametrize(("derivative", "measure"), CLOSED)
 @pytest.mark.parametrize("time", [0.0151, 0.0249])
-def test_a_duration_of_few_last_digits_leaves_more_than_the_first_order(
-    derivative: str, measure: str, time: float
-) -> None:
+def test_a_duration_of_few_digits_leaves_more(derivative: str, measure: str, time: float) -> None:
     """Both are printed as 0.02 s: the square of jerk changes by a factor of 12 between them."""
     power = {"velocity": 1, "acceleration": 2, "jerk": 3}[derivative]
     power = 2 * power - 1 if measure == "integral-square" else power

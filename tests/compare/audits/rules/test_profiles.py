@@ -32,9 +32,7 @@ def farthest(time: float, velocity: float, acceleration: float, jerk: float) -> 
 
 @pytest.mark.parametrize("way", [0.05, 0.4, 1.5, 6.0])
 @pytest.mark.parametrize("limits", [(2.0, 4.0, 20.0), (0.6, 4.0, 20.0), (2.0, 90.0, 20.0)])
-def test_an_s_curve_goes_as_far_as_any_motion_within_its_limits(
-    way: float, limits: tuple[float, float, float]
-) -> None:
+def test_no_motion_passes_an_s_curve(way: float, limits: tuple[float, float, float]) -> None:
     time = s_curve(way, *limits)
     assert farthest(time, *limits) == pytest.approx(way, rel=5e-3)
     assert s_curve(way, *limits[:2], np.inf) == trapezoidal(way, *limits[:2], np.inf)
@@ -75,9 +73,7 @@ def of_half_sines(ramp: float, held: float, cruise: float, jerk: float) -> np.nd
     ("ramp", "held", "cruise"),
     [(0.31, 0.52, 0.77), (0.31, 0.52, 0.0), (0.31, 0.0, 0.77), (0.31, 0.0, 0.0)],
 )
-def test_half_sines_of_jerk_take_the_time_of_a_jerk_smaller_by_half_pi(
-    ramp: float, held: float, cruise: float
-) -> None:
+def test_half_sines_are_a_jerk_smaller_by_half_pi(ramp: float, held: float, cruise: float) -> None:
     way, velocity, acceleration = of_half_sines(ramp, held, cruise, 9.0)
     total = 4 * ramp + 2 * held + cruise
     assert sine_jerk(way, velocity, acceleration, 9.0) == pytest.approx(total, rel=1e-9)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from trajgap.nlp.proofs.cubic.system import CubicSystem, capped, cubic_system
 from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import certificate, problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
 from trajgap.problem import Limits, Problem, TrajgapError, cubic_spline, load_case
 from trajgap.verify import MOST_INTEGER, TICKS, read_problem, verify_certificate as verify
 
@@ -96,9 +97,7 @@ def interrupted() -> Certified:
 
 
 def test_an_altered_state_is_refused() -> None:
-    def stop(_: Progress) -> None:
-        raise KeyboardInterrupt
-
+    stop = Mock(side_effect=KeyboardInterrupt)
     document = state_of(interrupted())
     rng = np.random.default_rng(0)
     for part, key in (("proposals", "tree"), ("proposals", "root"), ("proof", "tree")):
