@@ -204,9 +204,8 @@ def test_the_state_before_is_no_result_where_a_bare_total_is() -> None:
         one = audited_text(asked(*parts))
         assert one.card.optimum.startswith(said)
         (found,) = one.document.waterfalls
-        assert (found.claim, found.steps[0].time) == (
-            ("after", 2.5) if len(parts) > 2 else ("before", 4.0)
-        )
+        wanted = ("after", 2.5) if len(parts) > 2 else ("before", 4.0)
+        assert (found.claim, found.steps[0].time) == wanted
 
 
 def test_a_row_on_another_curve_is_named_by_its_place_alone() -> None:

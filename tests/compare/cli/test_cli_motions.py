@@ -38,9 +38,8 @@ def test_a_verdict_for_all_t_with_its_repair(run):
     result = found["result"]
     assert result["verdict"] == "pass"
     assert result["slow_down"] == 1.0
-    slower = run.document("check", "m.csv", "--velocity", "0.75", "--interpolation", "quintic")[
-        "result"
-    ]
+    flags = ["--velocity", "0.75", *flags[2:]]
+    slower = run.document("check", "m.csv", *flags)["result"]
     assert slower["verdict"] == "violated"
     assert slower["worst"]["joint"] == "j2"
     assert slower["worst"]["value"] == pytest.approx(-1.875)

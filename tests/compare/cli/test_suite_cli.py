@@ -109,9 +109,7 @@ def test_the_documented_commands_verify_an_export(
     for command in (second, copied):
         words = shlex.split(command)
         assert Path(words[-1]).is_file()
-        done = subprocess.run(
-            [sys.executable, *words[1:]], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         assert "proves: the least total" in done.stdout
     program = re.search(r"^```python\n(one = load.*?)^```$", page, re.MULTILINE | re.DOTALL)

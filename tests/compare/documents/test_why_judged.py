@@ -41,9 +41,8 @@ def said(readings: str, message: str, verdict: str = "refuted", kind: str = "bre
 def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() -> None:
     named = Named(LABELS, {"b": "57 times too slow"}, "a")
     assert under(("b",), READINGS, named) == "under the implausible “second”"
-    assert under(("b",), READINGS, named, why=True) == (
-        "under the implausible “second” (57 times too slow)"
-    )
+    said = "under the implausible “second” (57 times too slow)"
+    assert under(("b",), READINGS, named, why=True) == said
 
 
 def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default() -> None:

@@ -290,9 +290,7 @@ def test_an_optimiser_that_always_fails_stands_last_with_its_message() -> None:
 def test_failing_is_not_cheap() -> None:
     trial = Trial(TOY, "toy", "", "random", budget=1000)
     rows = (row([(8, float(EXACT.sum()))], 20), failed(trial, "raised"))
-    found = bench_result(
-        {"half": rows}, float(EXACT.sum()), problem="", reading="", budget=1000, seeds=2
-    )
+    found = bench_result({"half": rows}, EXACT.sum(), problem="", reading="", budget=1000, seeds=2)
     assert found.standings[0].targets[-1].evaluations == 8 + 1000
 
 

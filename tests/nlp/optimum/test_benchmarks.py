@@ -71,11 +71,8 @@ def test_blocks_add_up_and_are_replaced(rates: ModuleType) -> None:
     first = rates.rows_of("a", "hard", 0, Counter(optimal=98, failed=2), lost)
     second = rates.rows_of("b", "hard", 100, Counter(optimal=50), [(120, "improvable", "optimal")])
     rows = rates.merged(second, first)
-    assert [(row.code, row.status) for row in rows] == [
-        ("a", "optimal"),
-        ("a", "failed"),
-        ("b", "optimal"),
-    ]
+    wanted = [("a", "optimal"), ("a", "failed"), ("b", "optimal")]
+    assert [(row.code, row.status) for row in rows] == wanted
     shown = rates.tables(rows)["solver errors"]
     assert "| `a` | 100 | 0 to 99 |" in shown
     assert "| `b` | 50 | 100 to 149 |" in shown
@@ -166,9 +163,8 @@ def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
     for k, (problem, same) in enumerate(zip(INSTANCES, again, strict=True)):
         np.testing.assert_array_equal(problem.waypoints, same.waypoints)
         assert problem.curve == quintic_spline(7)
-        np.testing.assert_allclose(
-            problem.limits.derivatives[:, :2], limits.derivatives[:, :2], rtol=1e-15
-        )
+        own, given = (one.derivatives[:, :2] for one in (problem.limits, limits))
+        np.testing.assert_allclose(own, given, rtol=1e-15)
         assert not np.isfinite(problem.limits.jerk).any()
         steps = np.abs(np.diff(problem.waypoints, axis=0))
         assert steps.shape == (7, 6)

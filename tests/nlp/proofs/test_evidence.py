@@ -169,9 +169,8 @@ def test_a_closed_form_needs_no_file() -> None:
     assert answer.evidence is Evidence.CERTIFIED
     assert answer.lower_bound == pytest.approx(answer.total_time, rel=1e-8)
     spline = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), cubic_spline(2))
-    assert (
-        with_interval(solve(spline), proved(exact_problem(spline))).evidence is Evidence.BEST_KNOWN
-    )
+    bounds = proved(exact_problem(spline))
+    assert with_interval(solve(spline), bounds).evidence is Evidence.BEST_KNOWN
 
 
 @pytest.mark.parametrize(

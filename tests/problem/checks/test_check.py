@@ -245,9 +245,8 @@ def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     assert limited or (result.worst, result.peaks) == (None, ())
     assert result.feasible_time == pytest.approx(h.sum())
     assert result.tight_time is None
-    assert (
-        result.tight_why == "nothing moves or nothing is limited, so the total time can shrink to 0"
-    )
+    why = "nothing moves or nothing is limited, so the total time can shrink to 0"
+    assert result.tight_why == why
     assert not evaluate(problem, [h]).ratios.any()
 
 

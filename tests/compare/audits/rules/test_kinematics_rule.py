@@ -271,9 +271,7 @@ def test_the_palletiser_is_inconsistent_under_both_units(palletiser, unit):
     assert found.verdict is ClaimVerdict.INCONSISTENT
     assert found.severity is Severity.WARNING
     for convention in ("modified", "standard"):
-        part = re.search(
-            rf"(?:positions:|;) (pick [^;]*?) m \({convention} convention\)", found.message
-        )
+        part = re.search(rf"(?:positions:|;) (pick [^;]*?) m \({convention} conv", found.message)
         printed = [float(x) for x in re.findall(r"\d\.\d{3}", part[1])]
         expected = distances(unit, convention)
         assert len(printed) == 4

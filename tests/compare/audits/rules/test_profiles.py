@@ -93,9 +93,8 @@ def test_joints_on_a_straight_line_share_one_time_law() -> None:
     assert farthest(13 / 6, 2 / 3, 1.0, np.inf) == pytest.approx(1.0, rel=2e-2)
     # A joint that rests asks for nothing, even where it must not move.
     still = np.vstack([limits, np.zeros(3)])
-    assert resting_total("trapezoidal", np.array([[1.0, 3.0, 0.0]]), still, True) == pytest.approx(
-        13 / 6
-    )
+    way = np.array([[1.0, 3.0, 0.0]])
+    assert resting_total("trapezoidal", way, still, True) == pytest.approx(13 / 6)
     assert resting_total("s-curve", np.zeros((2, 3)), still, True) == 0.0
     assert resting_total("sine-jerk", ways, limits, True) == pytest.approx(13 / 6)
     one = np.array([[2.0, 1.0, 5.0]])
