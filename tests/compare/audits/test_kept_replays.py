@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from datetime import date
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from support.command_line import IRB
@@ -189,20 +190,14 @@ def test_replays_are_the_same_groups(tmp_path, coupling) -> None:
 
 
 def test_an_audit_says_the_same_with_and_without_what_is_kept(tmp_path, monkeypatch) -> None:
-    searches: list[int] = []
-    usual = kept_replays.run_many
-
-    def counted(*asked: Any) -> tuple[Run, ...]:
-        searches.append(1)
-        return usual(*asked)
-
-    monkeypatch.setattr(kept_replays, "run_many", counted)
+    searches = Mock(wraps=kept_replays.run_many)
+    monkeypatch.setattr(kept_replays, "run_many", searches)
     said, counts = [], []
     for where in (False, tmp_path, tmp_path):
         asked = {"problem": "limit-80", "reading": "waypoints-rad", "certify_seconds": 0}
         (one,) = audit(hurried(IRB), seeds=2, **asked, cache=where).cases
         said.append(replace(one, day=date(2026, 1, 1)).document.model_dump_json())
-        counts.append(len(searches))
+        counts.append(searches.call_count)
     assert len(set(said)) == 1
     assert counts[0] > 0
     assert counts == [counts[0], 2 * counts[0], 2 * counts[0]]
