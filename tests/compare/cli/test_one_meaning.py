@@ -76,8 +76,8 @@ def test_one_motion_within_the_same_limits_is_timed_once(monkeypatch: pytest.Mon
     slower = replace(answer, problem=replace(problem, limits=Limits([1.6], [3.0])))
     mirrored = replace(answer, problem=replace(problem, waypoints=-q))
     known: solving._Retimings = {}
-    asked_of = (answer, longer, bounded, slower, mirrored, answer)
-    found = [solving._retimed(one, known) for one in asked_of]
+    answers = (answer, longer, bounded, slower, mirrored, answer)
+    found = [solving._retimed(one, known) for one in answers]
     assert len(asked) == 4
     assert found[2] is found[0] is found[5]
     for one, said in zip((answer, longer, bounded, slower, mirrored), found, strict=False):

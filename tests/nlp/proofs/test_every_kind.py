@@ -150,7 +150,7 @@ def unlucky(name: str, seconds: float, patch: pytest.MonkeyPatch) -> tuple[Fract
 
 
 @pytest.mark.parametrize("name", UNLUCKY)
-def test_no_longer_answer_is_certified(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_an_optimum_is_certified(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     optimum, found = unlucky(name, 2.0, monkeypatch)
     assert found.outcome is Outcome.INTERVAL
     assert optimum / 2 < found.lower <= optimum
