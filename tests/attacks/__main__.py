@@ -97,7 +97,7 @@ def _keep(folder: Path, accounts: list[Account], seed: int) -> None:
             plain = "".join(c if c.isalnum() else "-" for c in account.attack.name)
             own = folder / f"{plain}-{seed}-{failure.number}"
             own.mkdir(parents=True, exist_ok=True)
-            (own / "why.txt").write_text(failure.why, encoding="utf-8")
+            (own / "why.txt").write_text(failure.why, "utf-8")
             for name, data in failure.files.items():
                 (own / name).write_bytes(data)
 

@@ -127,7 +127,7 @@ def _prepared(work: Work, folder: Path) -> None:
         acceleration=[9.0, 8.0],
     )
     keep(folder, case=text)
-    (folder / "table.csv").write_text(_TABLE, encoding="utf-8")
+    (folder / "table.csv").write_text(_TABLE, "utf-8")
     if work.earlier:
         for name, data in _earlier(work).items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -156,11 +156,11 @@ def write(
     }
     path = folder / f"motion.{reader}"
     if reader == "json":
-        path.write_text(json.dumps(message), encoding="utf-8")
+        path.write_text(json.dumps(message), "utf-8")
     else:
         import yaml
 
-        path.write_text(yaml.safe_dump(message), encoding="utf-8")
+        path.write_text(yaml.safe_dump(message), "utf-8")
     return path
 
 

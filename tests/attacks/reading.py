@@ -140,7 +140,7 @@ def raw_bytes(rng: Rng, folder: Path) -> str:
 def valid_case(rng: Rng, folder: Path) -> str:
     """A valid case file is shown, checked and solved; nothing in it may be refused."""
     drawn = draw_case(rng, small=True)
-    (folder / "case.toml").write_text(drawn.text, encoding="utf-8")
+    (folder / "case.toml").write_text(drawn.text, "utf-8")
     shown = command(["show", "case.toml", "--json"], folder, _CPU["show"])
     well_ended(shown, (0,), "show")
     document = strict_json(shown.out, "show")
@@ -160,7 +160,7 @@ def valid_case(rng: Rng, folder: Path) -> str:
 def audited_case(rng: Rng, folder: Path) -> str:
     """A valid case file is audited; the pages hold together."""
     drawn = draw_case(rng, small=True)
-    (folder / "case.toml").write_text(drawn.text, encoding="utf-8")
+    (folder / "case.toml").write_text(drawn.text, "utf-8")
     arguments = ["audit", "case.toml", "--seeds", "2", "--certify-seconds", "1", "--out", "pages"]
     ran = command(arguments, folder, _CPU["audit"])
     if ran.code == 2 and "coincide, chord parameters" in ran.err:

@@ -117,10 +117,7 @@ def _kept(folder: Path) -> dict[str, bytes]:
 
 
 def run(
-    attacks: Sequence[Attack],
-    seed: int,
-    seconds: float,
-    say: Callable[[str], None],
+    attacks: Sequence[Attack], seed: int, seconds: float, say: Callable[[str], None]
 ) -> list[Account]:
     """Run trials until the time is up; each attack gets its share of it."""
     warm()

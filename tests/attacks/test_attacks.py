@@ -121,7 +121,7 @@ def test_every_command_that_writes_is_tried_by_itself() -> None:
 
 def test_a_slip_of_an_attack_is_a_failure_with_its_files() -> None:
     def slips(rng: np.random.Generator, folder: Path) -> str | None:
-        (folder / "case.toml").write_text("x", encoding="utf-8")
+        (folder / "case.toml").write_text("x", "utf-8")
         raise TypeError("what is no longer there")
 
     account = Account(Attack("slip", "-", "-", slips))

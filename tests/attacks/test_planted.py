@@ -162,9 +162,7 @@ QUICK = 7
         for one in PLANTED
     ],
 )
-def test_a_planted_fault_is_found(
-    one: tuple[str, str, int], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fault_is_found(one: tuple[str, str, int], monkeypatch: pytest.MonkeyPatch) -> None:
     name, _, trials = one
     account = Account(next(a for a in ATTACKS if a.name == name))
     monkeypatch.setattr(faults, "WORKS", {k: w for k, w in faults.WORKS.items() if w.quick})
@@ -190,6 +188,6 @@ def test_a_planted_fault_is_found(
 def test_a_faulty_page_is_found(tmp_path: Path, page: str, why: str) -> None:
     (tmp_path / "audit.json").write_text('{"cases": [{"case": "c"}]}')
     (tmp_path / "c.md").write_text("plain")
-    (tmp_path / "c.html").write_text(page, encoding="utf-8")
+    (tmp_path / "c.html").write_text(page, "utf-8")
     with pytest.raises(Broken, match=why):
         hold_together(tmp_path)

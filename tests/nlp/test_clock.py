@@ -49,9 +49,7 @@ def interrupted() -> Certified:
     return stopped(LONG, lambda now: now.nodes >= 4 and now.open_boxes >= 2, gap=1e-3)
 
 
-def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_resumed_run_without_time_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     given = state_of(interrupted())
     monkeypatch.setattr(state, "verify_certificate", lambda document, **_: verify(document))
     boxes: list[Any] = []
@@ -97,9 +95,7 @@ def test_what_is_not_judged_in_time_is_not_certified_and_can_be_resumed(
     assert verify(certificate(finished)).proves
 
 
-def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_a_state_proved_stays_if_the_rest_runs_late(monkeypatch: pytest.MonkeyPatch) -> None:
     given = state_of(interrupted())
     monkeypatch.setattr(judged, "verify_certificate", lambda *_, **__: LATE)
     found = certify(LONG, gap=0.1, resume=given)
@@ -172,9 +168,7 @@ class Cut(Clock):
             raise OutOfTime
 
 
-def test_the_proof_of_an_answer_is_cut_short_and_proves_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_proof_of_an_answer_cut_short_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert prove_feasible(exact_problem(CUBIC), SLOW) is not None
     one = Session(exact_problem(CUBIC), Request(clock=RunClock(100.0)))
     asked: list[float] = []

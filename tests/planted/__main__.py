@@ -28,7 +28,7 @@ from planted.faults import FOLDERS, Fault, UnfitError, listed  # noqa: E402
 from planted.run import COMPILED, Crew, Job, asked, preload  # noqa: E402
 
 ROOT = _HERE.parents[1]
-KEPT = ROOT / ".pytest_cache" / "planted"
+KEPT = ROOT / ".pytest_cache/planted"
 """Where what tests call, and which faults are found, is kept: no tool puts it into a commit."""
 BUDGET = 60.0
 """Processor seconds, traced, of tests that are asked about one fault, the quick ones first.
@@ -75,7 +75,7 @@ def plant(
         if results.known(fault, list(covering), options.budget):
             continue
         asking = batches(covering, options.budget)
-        source = fault.planted((ROOT / fault.file).read_text(encoding="utf-8"))
+        source = fault.planted((ROOT / fault.file).read_text("utf-8"))
         seconds = sum(limit for _, limit in asking)
         if asking:
             jobs.append(
@@ -107,7 +107,7 @@ class Results:
         path.parent.mkdir(parents=True, exist_ok=True)
         self._rows: dict[str, dict[str, Any]] = {}
         if path.exists() and not afresh:
-            for line in path.read_text(encoding="utf-8").splitlines():
+            for line in path.read_text("utf-8").splitlines():
                 row = json.loads(line)
                 self._rows[row["fault"]] = row
 

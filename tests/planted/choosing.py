@@ -44,7 +44,7 @@ class Map:
         for file in sorted({f for folder in folders for f in self.mirror(folder, everywhere)}):
             path = self._path(file)
             if path.exists():
-                self._files[file] = json.loads(path.read_text(encoding="utf-8"))
+                self._files[file] = json.loads(path.read_text("utf-8"))
             else:
                 jobs.append(
                     Job(
@@ -56,7 +56,7 @@ class Map:
                 )
         for number, (file, text) in enumerate(crew.done(jobs), 1):
             text = text or '{"functions": [], "tests": {}}'
-            self._path(file).write_text(text, encoding="utf-8")
+            self._path(file).write_text(text, "utf-8")
             self._files[file] = json.loads(text)
             tests = self._files[file]["tests"].values()
             left_out = sum(not passes for passes, *_ in tests)

@@ -120,7 +120,7 @@ def listed(name: str, lists: Path = LISTS) -> Iterator[Fault]:
     path = lists / f"{name}.toml"
     if not path.exists():
         return
-    for file, functions in tomllib.loads(path.read_text(encoding="utf-8")).items():
+    for file, functions in tomllib.loads(path.read_text("utf-8")).items():
         for function, faults in functions.items():
             for old, new, *rest in faults:
                 place = rest[0] if rest and isinstance(rest[0], int) else None

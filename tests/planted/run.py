@@ -143,7 +143,7 @@ class Child:
             signal.signal(signal.SIGINT, signal.default_int_handler)
             text = job.work(copy.root)
             draft = answer.with_suffix(".draft")
-            draft.write_text(text, encoding="utf-8")
+            draft.write_text(text, "utf-8")
             draft.replace(answer)
             code = 0
         except BaseException:
@@ -174,7 +174,7 @@ class Child:
             os.killpg(self.pid, signal.SIGKILL)
 
     def text(self) -> str | None:
-        return self.answer.read_text(encoding="utf-8") if self.answer.exists() else None
+        return self.answer.read_text("utf-8") if self.answer.exists() else None
 
 
 def limit_processor(seconds: float) -> None:

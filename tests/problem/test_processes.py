@@ -92,9 +92,7 @@ def begin(item):
 """
 
 
-def test_a_killed_worker_costs_its_own_work_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_killed_worker_costs_its_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "logged_work.py").write_text(WORK)
     monkeypatch.syspath_prepend(tmp_path)
     begin = import_module("logged_work").begin
@@ -116,9 +114,7 @@ def test_a_killed_worker_costs_its_own_work_alone(
     ("end", "code", "said"),
     [(signal.raise_signal, signal.SIGKILL, "SIGKILL"), (os._exit, 3, "exit code 3")],
 )
-def test_work_that_ends_two_processes_is_refused(
-    end: Callable[[int], None], code: int, said: str
-) -> None:
+def test_work_that_ends_two_is_refused(end: Callable[[int], None], code: int, said: str) -> None:
     with pytest.raises(LostWork) as caught:
         list(in_processes(end, [code, code], 2))
     assert str(caught.value) == (
@@ -238,9 +234,7 @@ def test_results_that_cannot_be_sent_are_named() -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_what_all_processes_need_is_compiled_before_they_start(
-    workers: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_all_need_is_compiled_before(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     loop = import_module("trajgap.heuristics.loop")
     calls: list[object] = []
 

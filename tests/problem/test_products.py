@@ -174,12 +174,7 @@ def polynomials(truth: Exact) -> PPoly:
 
 
 def _as_motion(
-    truth: Exact,
-    dress: str,
-    order: int,
-    ends: tuple[float, float],
-    ratio: float,
-    expected: Verdict,
+    truth: Exact, dress: str, order: int, ends: tuple[float, float], ratio: float, expected: Verdict
 ) -> None:
     """The judge of motions from elsewhere, about the same polynomials."""
     if dress not in ("as it is", "mirror"):

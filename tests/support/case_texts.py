@@ -44,7 +44,7 @@ time = "s"
 {more}"""
 
 
-BASE = Path(__file__).with_name("base_case.toml").read_text(encoding="utf-8")
+BASE = Path(__file__).with_name("base_case.toml").read_text("utf-8")
 
 SCARA = Path(__file__).with_name("scara.toml").read_text("utf-8")
 """Its case file; way-points, limits and peaks in degrees, turns per minute, mm and m."""

@@ -7,6 +7,6 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def write_arm(folder: Path) -> None:
     """The URDF that README and guide read, as the guide shows it, into a folder."""
-    guide = (ROOT / "docs" / "guides" / "check-a-trajectory.md").read_text(encoding="utf-8")
+    guide = (ROOT / "docs/guides/check-a-trajectory.md").read_text("utf-8")
     _, _, rest = guide.partition(":caption: arm.urdf\n\n")
-    (folder / "arm.urdf").write_text(rest.partition("```")[0], encoding="utf-8")
+    (folder / "arm.urdf").write_text(rest.partition("```")[0], "utf-8")

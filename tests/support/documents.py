@@ -11,9 +11,7 @@ from support.made_up import one_joint, readings
 from trajgap.compare.audits.case_audit import AuditReport
 from trajgap.compare.documents import Document, json_text
 
-SCHEMA = json.loads(
-    (ROOT / "docs" / "reference" / "output.schema.json").read_text(encoding="utf-8")
-)
+SCHEMA = json.loads((ROOT / "docs/reference/output.schema.json").read_text("utf-8"))
 
 
 def closed(schema: Any) -> Any:

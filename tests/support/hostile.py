@@ -18,7 +18,7 @@ LINK = "[a](javascript:alert(3)) | ![b](https://example.org/y) `c` *d* $e$ è½¨è¿
 
 def hostile_case(case_id: str = ID) -> Case:
     """A shipped case, made quick and hostile: every free text tries to break out."""
-    text = (files("trajgap.problem") / "published" / f"{ID}.toml").read_text(encoding="utf-8")
+    text = (files("trajgap.problem") / "published" / f"{ID}.toml").read_text("utf-8")
     raw = tomllib.loads(text, parse_float=Decimal)
     raw["id"] = case_id
     joint = f"5{SCRIPT}"

@@ -94,7 +94,7 @@ def forks_and_leaves(fun: Any, bounds: Any, budget: int, rng: Any, mark: str) ->
     if not found:
         while True:
             time.sleep(3600)
-    Path(mark).write_text(str(found), encoding="utf-8")
+    Path(mark).write_text(str(found), "utf-8")
     os.kill(os.getpid(), signal.SIGKILL)
 
 

@@ -54,7 +54,7 @@ def each_refusal(name: str) -> pytest.MarkDecorator:
 def refusals(name: str) -> list[Refusal]:
     """All inputs of one file."""
     found, section = [], ""
-    for block in (FOLDER / f"{name}.txt").read_text(encoding="utf-8").split("\n\n"):
+    for block in (FOLDER / f"{name}.txt").read_text("utf-8").split("\n\n"):
         lines = [line for line in block.splitlines() if not line.startswith("#")]
         if lines and lines[0].startswith("["):
             section = lines[0].strip("[]")

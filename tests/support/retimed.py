@@ -24,13 +24,11 @@ def trajectory(coefficients: list[ArrayLike], durations: ArrayLike) -> Trajector
 def hermite(times: ArrayLike, nodes: ArrayLike) -> Trajectory:
     """Through position, velocity, ... at every time; nodes of shape (times, orders, joints)."""
     t, n = np.asarray(times, dtype=float), np.asarray(nodes, dtype=float)
-    joints = [
+    rows = [
         PPoly.from_bernstein_basis(BPoly.from_derivatives(t, list(n[:, :, j]))).c[::-1]
         for j in range(n.shape[2])
     ]
-    return trajectory(
-        [np.stack([c[:, k] for c in joints], 1) for k in range(t.size - 1)], np.diff(t)
-    )
+    return trajectory([np.stack([c[:, k] for c in rows], 1) for k in range(t.size - 1)], np.diff(t))
 
 
 def rest_to_rest_time(distance: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike) -> float:

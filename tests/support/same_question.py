@@ -28,19 +28,17 @@ def same_question(name: str, problem: Problem, h: Array) -> tuple[Problem, Array
         back[:, :, ::2] = sides[::-1, :, ::2]
         curve = ends_of(problem.curve, lambda r, v: (-1) ** r * v, back=True)
         turned = limits.with_sides(back)
-        bounds = {
+        ends = {
             key: None if given is None else given[::-1]
             for key in ("duration_lower", "duration_upper", "ratios")
             for given in (getattr(problem, key),)
         }
-        return replace(problem, waypoints=q[::-1], limits=turned, curve=curve, **bounds), h[::-1]
+        return replace(problem, waypoints=q[::-1], limits=turned, curve=curve, **ends), h[::-1]
     if name == "slower":
         slow = limits.with_sides(sides / SLOWER ** np.arange(1, 4))
         curve = ends_of(problem.curve, lambda r, v: v / SLOWER**r)
-        bounds = {
-            key: SLOWER * getattr(problem, key) for key in ("duration_lower", "duration_upper")
-        }
-        return replace(problem, limits=slow, curve=curve, **bounds), SLOWER * h
+        ends = {key: SLOWER * getattr(problem, key) for key in ("duration_lower", "duration_upper")}
+        return replace(problem, limits=slow, curve=curve, **ends), SLOWER * h
     if name == "permute":
         order = np.arange(q.shape[1])[::-1]
         turned = limits.with_sides(sides[:, order]).with_positions(low[order], high[order])

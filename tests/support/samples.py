@@ -30,9 +30,7 @@ DECLARATIONS: dict[str, Interpolant] = {
     "4-1-4": piecewise((4, 1, 4), 2, ((1, 0.0),)),
     "lines": piecewise((1, 1), 0, ()),
     "uneven": Interpolant(
-        (4, 6, 3),
-        (3, 2),
-        (((1, 0.0), (2, 0.0)), ((1, -0.3),), (), ((1, 0.2), (2, 0.5))),
+        (4, 6, 3), (3, 2), (((1, 0.0), (2, 0.0)), ((1, -0.3),), (), ((1, 0.2), (2, 0.5)))
     ),
 }
 """Determined declarations, one of each kind, and some that nobody prints."""

@@ -36,9 +36,9 @@ RUNS = 4 * 2 * 4
 
 def written(folder: Path, text: str = STUDY) -> Path:
     """A study file, and the case that it names beside it."""
-    (folder / "mine.toml").write_text(CASE, encoding="utf-8")
+    (folder / "mine.toml").write_text(CASE, "utf-8")
     path = folder / "few.toml"
-    path.write_text(text, encoding="utf-8")
+    path.write_text(text, "utf-8")
     return path
 
 

@@ -51,9 +51,7 @@ def test_the_folder_alone_proves_what_is_shipped(copied: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", NUMERIC)
-def test_the_folder_alone_says_what_it_needs_for_proofs_in_floats(
-    copied: Path, tmp_path: Path, kind: str
-) -> None:
+def test_the_folder_alone_says_what_floats_need(copied: Path, tmp_path: Path, kind: str) -> None:
     data = rest_to_rest()
     data["proof"]["kind"] = kind
     path = tmp_path / "numeric.json"
@@ -115,7 +113,7 @@ def test_it_imports_the_standard_library_and_itself() -> None:
             assert names <= {*sys.stdlib_module_names, *numpy}, path
 
 
-PAGE = ROOT / "docs" / "explanation" / "certificates.md"
+PAGE = ROOT / "docs/explanation/certificates.md"
 ROW = re.compile(r"^\| (core|`[a-z_/`, ]+`) \| ([\d,]+) \|", re.MULTILINE)
 
 

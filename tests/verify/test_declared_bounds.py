@@ -107,8 +107,7 @@ def test_no_feasible_answer_has_a_duration_below_the_least_one(name: str) -> Non
 
 
 @pytest.mark.parametrize(
-    "orders",
-    [(1, 2), *(pytest.param(o, marks=pytest.mark.slow) for o in ((2,), (1, 3), (3,)))],
+    "orders", [(1, 2), *(pytest.param(o, marks=pytest.mark.slow) for o in ((2,), (1, 3), (3,)))]
 )
 def test_a_joint_that_comes_back_takes_its_time(orders: tuple[int, ...]) -> None:
     """Its velocity where it enters the middle piece follows from the first or the last one."""

@@ -38,9 +38,7 @@ def test_each_kind_is_proved_whole_and_in_parts(kind: str) -> None:
         assert verify_certificate(document(kind), spread=spread) == verdict
 
 
-def test_a_kind_whose_leaves_leave_something_behind_is_not_handed_out(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_kind_whose_leaves_leave_traces_is_kept_back(monkeypatch: pytest.MonkeyPatch) -> None:
     def seen(work: Callable[..., Any], common: Any, parts: Iterable[Any]) -> Iterator[Any]:
         handed.extend(parts)
         return here(work, common, handed)
@@ -211,9 +209,7 @@ def test_a_wrong_hash_is_said(part: str) -> None:
     assert str(verdict).startswith("altered, still proves: ")
 
 
-def test_a_file_is_read_up_to_the_largest_size(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_files_are_read_up_to_a_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "certificate.json"
     path.write_text(json.dumps(document("by hand")))
     monkeypatch.setattr(reading, "MOST_BYTES", path.stat().st_size)

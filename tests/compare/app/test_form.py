@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from html import unescape
 from tempfile import gettempdir
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from support import browser
@@ -28,7 +29,7 @@ FIELDS = {
     "where": "Table 2",
     "name": "My paper",
 }
-GUIDE = (ROOT / "docs/guides/form.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs/guides/form.md").read_text("utf-8")
 MOTION = b"time,j1\n0,0\n0.5,0.25\n1,1\n1.5,1.75\n2,2\n"
 
 
@@ -163,10 +164,7 @@ def test_no_other_site_and_no_other_name_reaches_it(client: Any) -> None:
 
 
 def test_a_fault_of_ours_is_a_line_too(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(_: object) -> None:
-        raise RuntimeError("unforeseen")
-
-    monkeypatch.setattr(server, "audit", broken)
+    monkeypatch.setattr(server, "audit", Mock(side_effect=RuntimeError("unforeseen")))
     answer = client.post("/audit", data=FIELDS)
     assert answer.status_code == 500
     assert "please report" in faults(answer)["table"]

@@ -123,9 +123,7 @@ def test_the_algorithm_of_the_book_is_not_the_shortest() -> None:
 
 
 @pytest.mark.parametrize(("speed", "cruise"), [(0.01, 0.0), (0.2, 0.0), (0.8, 0.0), (0.8, 1.7)])
-def test_a_fourth_order_profile_passes_the_integral_of_its_speed(
-    speed: float, cruise: float
-) -> None:
+def test_a_fourth_order_profile_is_the_integral_of_its_speed(speed: float, cruise: float) -> None:
     limits = (0.8, 3.0, 20.0, 400.0)
     rise = shortest_s_curve(AxisState(0.0), AxisState(speed), Sizes(*limits[1:]))
     times = np.linspace(0.0, rise.total_time, 4001)
@@ -138,9 +136,7 @@ def test_a_fourth_order_profile_passes_the_integral_of_its_speed(
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("ends", [((0.4, 7.0), (0.2, -9.0)), ((0.0, 0.0), (3.0, 5.0))])
-def test_jerk_impulses_lead_from_state_to_state(
-    sign: float, ends: tuple[tuple[float, float], ...]
-) -> None:
+def test_jerk_leads_from_state_to_state(sign: float, ends: tuple[tuple[float, float], ...]) -> None:
     """The jerk is integrated twice and thrice; a plateau of the other sign is never reached."""
     start = AxisState(0.5, *(sign * x for x in ends[0]))
     finish = AxisState(0.5 + sign * 2.0, *(sign * x for x in ends[1]))

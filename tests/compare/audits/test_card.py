@@ -77,9 +77,7 @@ def test_without_limits_the_card_praises_no_motion_for_keeping_them() -> None:
     ("keys", "says"),
     [({}, "below the"), ({"other_curve": "straight lines"}, "another curve (straight lines)")],
 )
-def test_no_total_on_another_curve_stands_beside_the_optimum(
-    keys: dict[str, str], says: str
-) -> None:
+def test_no_total_of_another_curve_is_beside_the_optimum(keys: dict[str, str], says: str) -> None:
     card = card_of(total("total", "0.50", **keys), velocity="1.0")
     assert says in card.optimum
     assert ("totals are printed, but durations are not" in card.limits) == (not keys)
@@ -199,9 +197,7 @@ ONE = "Under “angles in rad, limits in rad/s and rad/s², stretched segments�
         (broken(IDS[:1]), IDS[:1], "Under the implausible “angles in rad"),
     ],
 )
-def test_a_sentence_says_under_how_many_readings_it_holds(
-    one: Cause, far: tuple[str, ...], wanted: str
-) -> None:
+def test_how_many_readings_a_sentence_names(one: Cause, far: tuple[str, ...], wanted: str) -> None:
     (said,) = plainly(CASE, one, far)
     assert wanted in said
     assert ("nder" in said) == ("nder" in wanted)

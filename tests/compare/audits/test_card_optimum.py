@@ -30,9 +30,7 @@ def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity
         ("shared", "the "),
     ],
 )
-def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima(
-    coupling: str, said: str
-) -> None:
+def test_a_total_of_joints_planned_alone_has_their_own_optima(coupling: str, said: str) -> None:
     """At 1.5 rad/s each joint needs 3 s, in 2 and 1 s or in 1 and 2 s, and the longest durations
     take 4 s, as all joints together do; up to 4.001 s while each joint stays within half a printed
     digit, 0.0005 s, of its own."""
@@ -59,9 +57,7 @@ def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima
         ("2.000 2.000", "4.000", "4.000 s agrees with the "),
     ],
 )
-def test_a_distance_stands_with_the_limit_that_its_motion_breaks(
-    times: str, value: str, said: str
-) -> None:
+def test_a_distance_has_the_limit_that_its_motion_breaks(times: str, value: str, said: str) -> None:
     assert line(row("all", times, total=value)).startswith(said)
 
 
@@ -132,9 +128,7 @@ def test_two_totals_stand_in_one_sentence() -> None:
     [("", ""), ("2.000", ""), ("2.042", "2.1 % above"), ("1.959", "at least 2.0 % below")],
 )
 @pytest.mark.parametrize("beside", [False, True])
-def test_a_sum_that_agrees_says_nothing_of_another_printed_total(
-    other: str, said: str, beside: bool
-) -> None:
+def test_a_sum_that_agrees_says_nothing_of_others(other: str, said: str, beside: bool) -> None:
     """The durations are the optimum, 2 s; a total beside them or elsewhere is 2.1 % above it."""
     parts = [row("all", "2.000", **({"total": other} if beside and other else {}))]
     if other and not beside:
@@ -213,9 +207,8 @@ def test_the_state_before_is_no_result_where_a_bare_total_is() -> None:
         one = audited_text(asked(*parts))
         assert one.card.optimum.startswith(said)
         (found,) = one.document.waterfalls
-        assert (found.claim, found.steps[0].time) == (
-            ("after", 2.5) if len(parts) > 2 else ("before", 4.0)
-        )
+        wanted = ("after", 2.5) if len(parts) > 2 else ("before", 4.0)
+        assert (found.claim, found.steps[0].time) == wanted
 
 
 def test_a_row_on_another_curve_is_named_by_its_place_alone() -> None:
@@ -277,6 +270,4 @@ def test_a_total_within_a_proven_interval_neither_agrees_nor_differs() -> None:
         said = optimum_line(study, found, {}, False)
     assert said.startswith("1.86 s")
     # Floats end at 1.875 s or one bit above it, which rounds up.
-    assert re.search(
-        r"lies in the proven interval of the optimum, 1\.8400 to 1\.875[01] s\.$", said
-    )
+    assert re.search(r"in the proven interval of the optimum, 1\.8400 to 1\.875[01] s\.$", said)

@@ -90,9 +90,7 @@ def test_rest_at_all_points_may_be_meant_of_the_ends() -> None:
 
 
 @pytest.mark.parametrize(("orders", "offered"), [([1], 1), ([1, 2], 0)])
-def test_rest_at_the_ends_is_offered_only_where_the_count_fits(
-    orders: list[int], offered: int
-) -> None:
+def test_rest_at_the_ends_is_offered_where_the_count_fits(orders: list[int], offered: int) -> None:
     """Two cubics have 8 coefficients: rest of velocity at the ends leaves 8 conditions, rest of
     acceleration too would leave 10."""
     given = "0.00 0.50 1.00", 90, "1.00 1.00", "2.00"
@@ -197,9 +195,7 @@ def test_what_explains_one_row_does_not_speak_for_another() -> None:
         ("1.25", "-1.20", "Way-point B of joint 1 may be misprinted: 1.20 instead of -1.20."),
     ],
 )
-def test_a_misprint_is_found_where_the_reading_takes_the_number(
-    limit: str, end: str, named: str
-) -> None:
+def test_a_misprint_is_found_where_the_reading_has_it(limit: str, end: str, named: str) -> None:
     points = {"labels": ["A", "B"], "joint_rows": [["0.20", end], ["0.30", "0.90"]]}
     text = paper(
         ["0.10 1.10", "0.30 0.90"],
@@ -219,13 +215,11 @@ def test_what_no_small_change_explains_has_no_explanation() -> None:
     assert judged([0, 3], 1.9, "0.100", "0.100").causes[0].explanations == ()
 
 
-@pytest.mark.parametrize(("limit", "explained"), [(2.035, True), (2.03, False)])
-def test_limits_that_hold_at_samples_are_explained_by_them(limit: float, explained: bool) -> None:
+@pytest.mark.parametrize(("limit", "said"), [(2.035, True), (2.03, False)])
+def test_limits_that_hold_at_samples_are_explained_by_them(limit: float, said: bool) -> None:
     """A cubic spline peaks at 2.0431 rad/s, and at 2.0326 rad/s at ten steps a segment."""
     curve = {"family": "cubic-spline"}
     one = judged([0.1, 1.3, 0.9], limit, "0.83000 0.71000", "1.54000", curve=curve)
     (cause,) = one.causes
     assert cause.rule == "TG201"
-    assert (
-        any("at ten samples per segment none" in e.change for e in cause.explanations) is explained
-    )
+    assert any("at ten samples per segment none" in e.change for e in cause.explanations) is said

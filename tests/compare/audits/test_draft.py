@@ -123,9 +123,7 @@ def test_a_sound_draft_without_open_points_needs_nothing(shorter: list[float]) -
 
 
 @pytest.mark.parametrize(("more", "word"), [(0.0, "supported"), (0.002, "refuted")])
-def test_an_optimum_whose_digits_were_rounded_up_is_not_refuted_and_a_longer_one_is(
-    more: float, word: str, shorter: list[float]
-) -> None:
+def test_an_optimum_rounded_up_is_not_refuted(more: float, word: str, shorter: list[float]) -> None:
     one = drafted(digits(shorter, more), f"{sum(shorter) + 3 * more:.3f}", "optimal")
     (judged,) = [j for j in one.judgements if j.claim == "said"]
     assert judged.verdict == word

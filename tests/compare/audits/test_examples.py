@@ -110,7 +110,7 @@ SAID = {
 
 @cache
 def example(name: str) -> Case:
-    return load_case(ROOT / "docs" / "examples" / f"{name}.toml")
+    return load_case(ROOT / "docs/examples" / f"{name}.toml")
 
 
 @cache
@@ -155,9 +155,7 @@ def test_the_optimum_is_the_one_found_before(name: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "durations", "quantity", "truth"), PEAKS)
-def test_peaks_are_those_recomputed(
-    name: str, durations: list[float], quantity: str, truth: str
-) -> None:
+def test_peaks_are_recomputed(name: str, durations: list[float], quantity: str, truth: str) -> None:
     problem = example(name).problem()
     found = np.abs(np.rad2deg(peaks(problem, durations, quantity)))
     places = len(truth.split()[0].split(".")[1])
@@ -201,7 +199,7 @@ def test_equal_segments_of_zou_2024_are_far_from_the_limits_at_39_60_s() -> None
 
 def test_a_multi_objective_total_lies_above_the_shortest_known() -> None:
     """27.744 s is a compromise: the shortest known time stands beside it as information."""
-    path = ROOT / "docs" / "examples" / f"{SLOW}.toml"
+    path = ROOT / "docs/examples" / f"{SLOW}.toml"
     one = audit(path, seeds=2, certify_seconds=0, problem="stage-2", reading="degree-7").cases[0]
     (beside,) = (f for f in one.findings if f.rule == "TG302")
     assert (beside.claim, beside.printed) == ("stage-2-shortest-time", "27.744 s")

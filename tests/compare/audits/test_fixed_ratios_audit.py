@@ -102,9 +102,7 @@ def test_a_total_five_percent_longer_is_refuted(ratios: object) -> None:
 
 
 @pytest.mark.parametrize(("ratios", "rows"), [("chord", LOOSE), (["1.00"] * 3, EXACT)])
-def test_ratios_that_stand_for_intervals_refute_nothing(
-    ratios: object, rows: Sequence[Numbers]
-) -> None:
+def test_ratios_that_are_intervals_refute_nothing(ratios: object, rows: Sequence[Numbers]) -> None:
     best = shortest(RATIOS["chord" if ratios == "chord" else "equal"])
     one = audited_text(text(1.05 * best, ratios, rows=rows))
     assert verdicts(one)["best"] is ClaimVerdict.NOT_CHECKABLE

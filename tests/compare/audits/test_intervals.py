@@ -112,12 +112,10 @@ def test_a_given_certificate_counts_once_it_is_proved_again() -> None:
 
 def test_an_unconverged_search_is_no_step_of_a_waterfall(monkeypatch) -> None:
     study = Study(stated(), seeds=2, certify_seconds=0)
-    early = Solution(
-        study.problem(study.pairs[0]), Status.FEASIBLE, "KKT residual 3e-01", np.ones(3)
-    )
+    early = Solution(study.problem(study.pairs[0]), Status.FEASIBLE, "residual 3e-01", np.ones(3))
     monkeypatch.setattr(Study, "relaxed", lambda *_: early)
     steps = {s.name: s for s in waterfalls(study)[0].steps}
     shown = steps["relaxed family"]
     assert isinstance(shown.time, Why)
-    assert "did not converge (KKT residual 3e-01)" in shown.note
+    assert "did not converge (residual 3e-01)" in shown.note
     assert isinstance(steps["TOPPRA on the path of the relaxed family"].time, Why)

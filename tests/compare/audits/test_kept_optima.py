@@ -5,13 +5,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 from trajgap.compare.audits import kept_optima
 from trajgap.compare.audits.instances.drawn import _ended
 from trajgap.compare.audits.kept_optima import AskedOptimum, KeptOptima
-from trajgap.nlp import Solution
 from trajgap.nlp.optimum import solve
 from trajgap.problem import Interpolant, Limits, Problem, rest_to_rest, three_five_three
 from trajgap.verify import seal
@@ -29,16 +29,10 @@ ASKED = [
 
 
 @pytest.fixture
-def made(monkeypatch: pytest.MonkeyPatch) -> list[Problem]:
-    """The problems that were solved since the test began."""
-    begun: list[Problem] = []
-
-    def counting(problem: Problem, **asked: Any) -> Solution:
-        begun.append(problem)
-        return solve(problem, **asked)
-
-    monkeypatch.setattr(kept_optima, "solve", counting)
-    return begun
+def made(monkeypatch: pytest.MonkeyPatch) -> Mock:
+    """Calls are of the problems that were solved since the test began."""
+    monkeypatch.setattr(kept_optima, "solve", Mock(wraps=solve))
+    return kept_optima.solve
 
 
 def said(found: Any) -> list[Any]:
@@ -46,29 +40,31 @@ def said(found: Any) -> list[Any]:
     return [_ended(one) for one in found]
 
 
-def test_kept_optima_are_what_the_search_finds(tmp_path: Path, made: list[Problem]) -> None:
+def test_kept_optima_are_what_the_search_finds(tmp_path: Path, made: Mock) -> None:
     plain = said(KeptOptima(False).solved(ASKED))
     cold = said(KeptOptima(tmp_path).solved(ASKED))
-    assert len(made) == 2 * len(ASKED)
+    assert made.call_count == 2 * len(ASKED)
     warm = said(KeptOptima(tmp_path).solved(ASKED))
-    assert len(made) == 2 * len(ASKED) + 3  # one made again, two that no durations bear out
+    assert made.call_count == 2 * len(ASKED) + 3  # one made again, two that no durations bear out
     assert plain == cold == warm
     KeptOptima(tmp_path).solved([ASKED[0]._replace(starts=3)])
-    assert len(made) == 2 * len(ASKED) + 4
+    assert made.call_count == 2 * len(ASKED) + 4
 
 
-def test_an_answer_of_both_routes_is_judged_and_not_searched(tmp_path: Path, made) -> None:
+def test_an_answer_of_both_routes_is_judged_and_not_searched(tmp_path: Path, made: Mock) -> None:
     ends = PROBLEM.curve.prescribed[0], PROBLEM.curve.prescribed[-1]
     free = replace(PROBLEM, curve=Interpolant((5, 5, 5), (2, 2), (ends[0], (), (), ends[1])))
     for problem, other in ((PROBLEM, True), (free, False)):
         asked = AskedOptimum(problem, known=np.full((1, 3), 9.0), lower=0.1, other_route=other)
         cold, warm = (KeptOptima(tmp_path).optimum(asked) for _ in range(2))
-        assert made.pop() is problem
-        assert made == []
+        (call,) = made.call_args_list
+        assert call.args[0] is problem
         assert kept_optima._left(cold) == kept_optima._left(warm)
         assert (warm.other_total is not None) == other
         KeptOptima(tmp_path).optimum(asked._replace(known=asked.known + 1e-9))
-        assert made.pop() is problem
+        assert made.call_args.args[0] is problem
+        assert made.call_count == 2
+        made.reset_mock()
 
 
 def stretched(left: list[Any], share: float) -> None:
@@ -90,22 +86,19 @@ SPOILED: dict[str, Callable[[list[Any]], object]] = {
 
 @pytest.mark.parametrize("name", SPOILED)
 def test_a_spoiled_file_is_searched_over_and_replaced(
-    tmp_path: Path, made: list[Problem], name: str
+    tmp_path: Path, made: Mock, name: str
 ) -> None:
     asked = ASKED[:2]
     cold = said(KeptOptima(tmp_path).solved(asked))
     (file,) = tmp_path.glob("*.json")
     own = file.read_bytes()
     stored = json.loads(own)
-    question = {
-        "problems": [one.words() for one in asked],
-        "code": kept_optima.search_code(),
-    }
+    question = {"problems": [one.words() for one in asked], "code": kept_optima.search_code()}
     assert stored["seal"] == seal([question, stored["answers"]])
     SPOILED[name](stored["answers"])
     stored["seal"] = seal([question, stored["answers"]])
     file.write_text(json.dumps(stored))
-    made.clear()
+    made.reset_mock()
     assert said(KeptOptima(tmp_path).solved(asked)) == cold
-    assert len(made) >= len(asked)
+    assert made.call_count >= len(asked)
     assert file.read_bytes() == own

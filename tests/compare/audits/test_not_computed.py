@@ -84,9 +84,7 @@ def test_an_algorithm_that_cannot_judge_a_curve_is_not_replayed(free: CaseAudit)
     assert all(message.startswith(why) for message in replays(free).values())
 
 
-def test_durations_of_a_curve_that_leaves_coefficients_free_define_no_motion(
-    free: CaseAudit, tmp_path: Path
-) -> None:
+def test_durations_with_free_coefficients_define_no_motion(free: CaseAudit, tmp_path: Path) -> None:
     (found,) = (f for f in free.findings if f.rule == "TG502")
     assert (found.claim, found.problem, found.reading) == ("d", "main", "as-printed")
     assert "leaves 4 coefficients per joint free" in found.message
@@ -153,9 +151,7 @@ def test_one_claim_that_fails_takes_no_other_with_it(
 @pytest.mark.parametrize(
     "error", [CaseError("partly.toml", "x", "is wrong"), ProcessError("workers: gone")]
 )
-def test_bad_input_and_dead_processes_still_end_an_audit(
-    error: TrajgapError, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_audits_outlive_bad_input(error: TrajgapError, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(case_audit, "GROUPS", (RuleGroup(failing(error), {}),))
     with pytest.raises(type(error), match=r"is wrong|workers: gone"):
         audited_text(text())
@@ -203,7 +199,7 @@ def test_terminal_pages_and_json_say_that_there_is_no_shortest_motion(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "free.toml"
-    path.write_text(one_joint("0.3, 1.7", "inf", "2.5", "optimal"), encoding="utf-8")
+    path.write_text(one_joint("0.3, 1.7", "inf", "2.5", "optimal"), "utf-8")
     assert main(["audit", str(path), "--out", str(tmp_path / "out")]) == 0
     shown = capsys.readouterr().out
     assert f"No optimum: {SAID}." in shown

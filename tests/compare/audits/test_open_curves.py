@@ -17,10 +17,7 @@ from trajgap.problem import Limits, Problem, quintic_spline
 
 CASE = paper(
     ["0.3 0.9 0.2 -0.45", "-1.0 -0.55 0.35 0.1"],
-    readings(
-        free={"default": True},
-        virtual={"interpolant": {"family": "quintic-spline-virtual"}},
-    ),
+    readings(free={"default": True}, virtual={"interpolant": {"family": "quintic-spline-virtual"}}),
     total("total", "2.9"),
     row("four", "0.98 0.89 0.20 0.94", total="3.01"),
     sentence("kept", "within_limits", "four"),
@@ -139,9 +136,7 @@ def test_a_broken_limit_is_not_refuted_for_rounded_knots(inner: str, verdict: st
 
 
 @pytest.mark.parametrize(("curve", "tables"), [(given("exact", TIMED), 0), (RULED, 1)])
-def test_no_table_of_rules_stands_beside_a_printed_vector(
-    curve: dict[str, Any], tables: int
-) -> None:
+def test_no_table_of_rules_is_beside_a_printed_vector(curve: dict[str, Any], tables: int) -> None:
     assert len(_determined(study_of(text(curve, "1 1 1")).case)) == tables
 
 
@@ -149,9 +144,7 @@ def test_no_table_of_rules_stands_beside_a_printed_vector(
 @pytest.mark.parametrize(
     ("first", "verdict"), [("0.86", "not checkable"), ("0.96", "inconsistent")]
 )
-def test_stretched_segments_jump_unless_rounding_hides_their_proportions(
-    first: str, verdict: str
-) -> None:
+def test_stretched_segments_jump_unless_rounding_hides_the_ratio(first: str, verdict: str) -> None:
     """3 : 3.5 : 3.5 are the proportions of the parameters; 0.86 : 1.00 : 1.00 round to them."""
     one = audited_text(text(given("exact", STRETCHED), f"{first} 1.00 1.00"))
     assert verdicts(one)["smooth"] == verdict

@@ -17,11 +17,7 @@ from trajgap.compare.audits.axis_profile import (
 )
 from trajgap.compare.audits.named_profiles import fourth_order
 from trajgap.compare.audits.number_range import NumberRange
-from trajgap.compare.audits.profile_motions import (
-    ProfileMotion,
-    ProfileQuestion,
-    questions,
-)
+from trajgap.compare.audits.profile_motions import ProfileMotion, ProfileQuestion, questions
 
 STILL = np.zeros((2, 1, 2))
 WITHIN = np.full((1, 4), 9.0)

@@ -64,8 +64,8 @@ def test_only_joints_that_move_one_by_one_have_certificates_of_their_own(monkeyp
 
 def test_the_command_makes_the_same_selection_again(tmp_path):
     study = Study(load_case(ID), seeds=4, problem="limit-80", reading="waypoints-rad")
-    made = provenance(study, date(2026, 1, 31))
-    assert made.command == (
+    one = provenance(study, date(2026, 1, 31))
+    assert one.command == (
         f"trajgap audit {ID} --seeds 4 --problem limit-80 --reading waypoints-rad"
     )
     beside = Study(load_case(ID), seeds=4, certificates_folder="proofs")
@@ -115,10 +115,8 @@ def test_messages_call_things_by_their_names_and_places():
 def test_no_sentence_is_judged_twice(case_id: str) -> None:
     """Where one printed sentence is two claims, neither holds the other: each could be judged
     otherwise, and the same words would stand in two rows with two verdicts."""
-    stated = [
-        c for c in load_case(case_id).claims if isinstance(c, StatementClaim | ConditionsClaim)
-    ]
-    for one, other in permutations(stated, 2):
+    said = [c for c in load_case(case_id).claims if isinstance(c, StatementClaim | ConditionsClaim)]
+    for one, other in permutations(said, 2):
         alone, among = (set(re.findall("[a-z]{4,}", c.text.lower())) for c in (one, other))
         alone -= {"motion", "that", "with", "from", "they"}
         assert one.where != other.where or not alone <= among, (one.id, other.id)

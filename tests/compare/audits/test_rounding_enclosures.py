@@ -16,10 +16,8 @@ def exact_coefficients(
     interpolant: Interpolant, durations: list[Fraction], waypoints: list[Fraction]
 ) -> list[Fraction]:
     """One joint's coefficients in the share of each segment."""
-    pieces = fitted(interpolant, waypoints, durations)
-    return [
-        c * h**p for piece, h in zip(pieces, durations, strict=True) for p, c in enumerate(piece)
-    ]
+    rows = fitted(interpolant, waypoints, durations)
+    return [c * h**p for piece, h in zip(rows, durations, strict=True) for p, c in enumerate(piece)]
 
 
 def escaped(ball: Ball, exact: list[Fraction]) -> float:

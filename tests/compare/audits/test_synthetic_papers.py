@@ -98,9 +98,7 @@ def test_every_fault_is_seen_where_the_digits_show_it_clearly(fault: str) -> Non
 
 @pytest.mark.parametrize("seed", [5, *slow(range(6, 28))])
 @pytest.mark.parametrize("made", [apart, moving])
-def test_no_card_accuses_a_paper_whose_totals_are_kept_apart(
-    made: Callable[[int], str], seed: int
-) -> None:
+def test_no_card_accuses_papers_of_totals_apart(made: Callable[[int], str], seed: int) -> None:
     one = audited_text(made(seed))
     assert (one.errors, one.card.errors, one.card.more) == (0, (), 0)
     assert contradicted(one) == {}

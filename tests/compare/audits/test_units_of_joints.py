@@ -34,10 +34,7 @@ from trajgap.problem.motions import MotionForm, motion_text, read_motion
 RULES = ["TG107", "TG110", "TG201", "TG203", "TG208", "TG209", "TG601"]
 """Of rules that speak of joints' numbers and solve nothing."""
 Change = tuple[str, str]
-STRETCHED = (
-    'family = "cubic-spline"',
-    'family = "uniform-cubic-b-spline"\ntime = "stretched"',
-)
+STRETCHED = ('family = "cubic-spline"', 'family = "uniform-cubic-b-spline"\ntime = "stretched"')
 
 
 @cache
@@ -257,9 +254,6 @@ def test_sentences_and_digits_have_the_unit_of_each_joint() -> None:
     assert shown == "0.980, 0.860, 1.500 min; total 3.340 min"
 
 
-LIMITS = "30 rpm (3.14159 rad/s), 150 °/s (2.61799 rad/s), 120 mm/s (0.12 m/s)"
-
-
 def plain_page(one: CaseAudit) -> str:
     with sketched():
         return re.sub(r"<[^>]+>", " ", page_text(case_page(one)))
@@ -269,7 +263,7 @@ def test_limits_have_their_units_where_no_way_points_are_printed() -> None:
     text = SCARA[SCARA.index("waypoint_rows = [") : SCARA.index("[limits]")]
     absent = 'not_printed = "in a figure alone"\ncount = 4\n\n'
     plain = plain_page(report_of(scara((text, absent))).cases[0])
-    assert LIMITS in plain
+    assert "30 rpm (3.14159 rad/s), 150 °/s (2.61799 rad/s), 120 mm/s (0.12 m/s)" in plain
     assert "velocity limits, rad/s" not in plain
 
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from support.command_line import AUDITS, CASE, PAGES, Run
@@ -14,7 +15,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     for name in ("NO_COLOR", "COLUMNS", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
-    (tmp_path / "mine.toml").write_text(CASE, encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(CASE, "utf-8")
     return tmp_path
 
 
@@ -40,7 +41,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 def pages(monkeypatch: pytest.MonkeyPatch) -> None:
     def write(report: object, out: Path) -> None:
         out.mkdir(exist_ok=True)
-        (out / "index.html").write_text("page", encoding="utf-8")
+        (out / "index.html").write_text("page", "utf-8")
 
     monkeypatch.setattr(PAGES, "write_report", write)
 
@@ -48,10 +49,7 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that computes is ended."""
-
-    def compute(*_: object, **__: object) -> None:
-        raise AssertionError("computes")
-
+    compute = Mock(side_effect=AssertionError("computes"))
     for name in (
         "solve_command.solve_exactly",
         "solve_command.solve_per_joint",

@@ -42,7 +42,7 @@ def test_each_command_explains_itself(run: Run, command: str) -> None:
     out = run.done(command, "--help")
     assert "2    bad input" in out
     for option in re.findall(r"--[a-z-]+", out):
-        page = (ROOT / "docs" / "reference" / "command-line.md").read_text("utf-8")
+        page = (ROOT / "docs/reference/command-line.md").read_text("utf-8")
         assert option in page, option
 
 
@@ -82,12 +82,8 @@ def test_a_crate_needs_its_package(run: Run, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_no_command_says_how_to_begin_and_prints_the_help(run: Run) -> None:
     begin, _, help_ = run()[1].partition("\n\n")
-    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == [
-        "audit",
-        "new",
-        "check",
-        "solve",
-    ]
+    first = ["audit", "new", "check", "solve"]
+    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == first
     assert help_ == run("--help")[1]
 
 
@@ -113,7 +109,7 @@ def test_show(run: Run) -> None:
 def test_show_says_what_holds_at_each_end(run: Run) -> None:
     ends = "end_derivatives = [[0.2, -0.1]], finish_orders = [2]"
     text = CASE.replace('"3-5-3"', f'"cubic-spline", {ends}')
-    Path("ends.toml").write_text(text, encoding="utf-8")
+    Path("ends.toml").write_text(text, "utf-8")
     out = " ".join(run("show", "ends.toml")[1].split())
     assert "velocity given at the start, acceleration at the finish, acceleration 0 at" in out
 

@@ -70,7 +70,7 @@ def test_bounds_are_printed_outwards_and_the_file_names_its_question(run: Run) -
     assert Fraction(row[1]) >= verdict.upper
     assert row[-1] == "certified"
     (one,) = strict(run("verify", file, "--json")[1])["verified"]
-    case = (ROOT / "problem" / "published" / f"{IRB}.toml").read_bytes()
+    case = (ROOT / "problem/published" / f"{IRB}.toml").read_bytes()
     assert one["question"]["case_sha256"] == hashlib.sha256(case).hexdigest()
     assert one["question"]["joint"] is None
 
@@ -105,9 +105,7 @@ def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
     assert not Path(state).exists(), "a finished certificate needs none"
 
 
-def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_refused_proof_is_not_called_certified(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     module = import_module("trajgap.nlp.proofs.declared.certifier")
     real = module._kind
 
@@ -185,10 +183,7 @@ def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any])
     assert (code, err) == (1, "")
     words = [line.split(": ")[1] for line in files_of(out)]
     assert words == ["proves", "altered, still proves", "refused", "refused"]
-    for names, code, worth in (
-        (("good", "harmless"), 0, words[:2]),
-        (("broken",), 1, words[2:3]),
-    ):
+    for names, code, worth in ((("good", "harmless"), 0, words[:2]), (("broken",), 1, words[2:3])):
         files = [f"{name}.json" for name in names]
         found = run.document("verify", *files, code=code, kind="verify")["verified"]
         assert [one["worth"] for one in found] == worth

@@ -38,9 +38,8 @@ def test_a_verdict_for_all_t_with_its_repair(run):
     result = found["result"]
     assert result["verdict"] == "pass"
     assert result["slow_down"] == 1.0
-    slower = run.document("check", "m.csv", "--velocity", "0.75", "--interpolation", "quintic")[
-        "result"
-    ]
+    flags = ["--velocity", "0.75", *flags[2:]]
+    slower = run.document("check", "m.csv", *flags)["result"]
     assert slower["verdict"] == "violated"
     assert slower["worst"]["joint"] == "j2"
     assert slower["worst"]["value"] == pytest.approx(-1.875)
@@ -88,13 +87,13 @@ def test_flag_file_urdf_in_this_order(run):
     Path("l.yaml").write_text("joint_limits: {j2: {max_velocity: 3.0, max_jerk: 500}}\n")
     sources = ["--urdf", "arm.urdf", "--limits", "l.yaml", "--jerk", "400"]
     found = run.document("check", "m.csv", *sources, "--interpolation", "quintic")
-    said = {
+    peak = {
         (p["joint"], p["quantity"]): (p["limit"], p["source"]) for p in found["result"]["peaks"]
     }
-    assert said["j2", "velocity"] == (-3.0, "l.yaml")
-    assert said["j1", "velocity"] == (1.0, "arm.urdf")
-    assert said["j2", "jerk"][1] == "flags"
-    assert said["j1", "position"][1] == "arm.urdf"
+    assert peak["j2", "velocity"] == (-3.0, "l.yaml")
+    assert peak["j1", "velocity"] == (1.0, "arm.urdf")
+    assert peak["j2", "jerk"][1] == "flags"
+    assert peak["j1", "position"][1] == "arm.urdf"
 
 
 def test_strict_is_for_scripts(run):

@@ -14,7 +14,7 @@ TABLE = "point,q1,q2\nA,0.30,-1.0\nB,1.10,0.4\nC,0.90,1.7\nD,2.00,1.2\n"
 
 @pytest.fixture
 def table(folder: Path) -> str:
-    (folder / "table.csv").write_text(TABLE, encoding="utf-8")
+    (folder / "table.csv").write_text(TABLE, "utf-8")
     return "table.csv"
 
 
@@ -32,9 +32,7 @@ def test_new_with_every_unit(run: Run, table: str) -> None:
 @pytest.mark.parametrize(
     ("where", "place"), [(("--where", "Table 4"), "Table 4"), ((), "a place not stated")]
 )
-def test_what_new_writes_can_be_shown(
-    run: Run, table: str, where: tuple[str, ...], place: str
-) -> None:
+def test_what_new_writes_is_shown(run: Run, table: str, where: tuple[str, ...], place: str) -> None:
     units = ("--position-unit", "deg", "--time-unit", "s", "--total", "3.4")
     out = run.done("new", "out.toml", "--from", table, *units, *where)
     assert out == "written: out.toml\nnext: trajgap audit out.toml  # judges what is claimed\n"
@@ -43,7 +41,7 @@ def test_what_new_writes_can_be_shown(
 
 
 def test_new_warns_of_joints_that_may_be_angles(run: Run, folder: Path) -> None:
-    Path("table.csv").write_text("1,2\n10,20\n30,40\n", encoding="utf-8")
+    Path("table.csv").write_text("1,2\n10,20\n30,40\n", "utf-8")
     units = ("--position-unit", "deg", "--time-unit", "s")
     code, _, err = run("new", "out.toml", "--from", "table.csv", *units)
     assert code == 0
@@ -79,9 +77,7 @@ def test_new_asks_again_on_a_terminal(table: str) -> None:
     assert load_case("out.toml").document.units.position == "rad"
 
 
-def test_new_takes_no_wrong_unit_from_a_pipe(
-    run: Run, table: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_wrong_unit_from_a_pipe(run: Run, table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("furlong\nrad\n"))
     assert_refused(
         run("new", "out.toml", "--from", table),
@@ -106,23 +102,21 @@ UNITS = ("--position-unit", "rad,rad,mm", "--time-unit", "s")
 
 @pytest.fixture
 def arm(folder: Path) -> str:
-    (folder / "arm.urdf").write_text(URDF, encoding="utf-8")
+    (folder / "arm.urdf").write_text(URDF, "utf-8")
     return "arm.urdf"
 
 
 def test_new_refuses_an_angle_for_a_joint_that_slides(run: Run, folder: Path, arm: str) -> None:
-    (folder / "t.csv").write_text(f"turn,swing,reach\n{ROWS}", encoding="utf-8")
+    (folder / "t.csv").write_text(f"turn,swing,reach\n{ROWS}", "utf-8")
     units = ("--position-unit", "deg", "--time-unit", "s")
     answer = run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *units)
     assert_refused(answer, "reach: slides, but its unit is deg", "such as deg,deg,m")
 
 
 @pytest.mark.parametrize("header", ["turn,swing,reach", "1,2,3", "point,1,2,3"])
-def test_new_takes_limits_and_names_from_a_urdf(
-    run: Run, folder: Path, arm: str, header: str
-) -> None:
+def test_new_has_limits_and_names_of_a_urdf(run: Run, folder: Path, arm: str, header: str) -> None:
     rows = ROWS if header[0] != "p" else "".join(f"P{k},{r}\n" for k, r in enumerate(ROWS.split()))
-    (folder / "t.csv").write_text(f"{header}\n{rows}", encoding="utf-8")
+    (folder / "t.csv").write_text(f"{header}\n{rows}", "utf-8")
     code, _, err = run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *UNITS)
     assert code == 0
     assert err.count("deceleration has its own limit at joint swing") == 1
@@ -134,17 +128,15 @@ def test_new_takes_limits_and_names_from_a_urdf(
     assert np.isinf(limits.jerk).all()
     assert limits.position_lower == pytest.approx([-np.inf, -1.5, 0.0])
     assert limits.position_upper == pytest.approx([np.inf, 2.25, 0.4])
-    text = Path("out.toml").read_text(encoding="utf-8")
+    text = Path("out.toml").read_text("utf-8")
     said = "limits of velocity, acceleration and position from arm.urdf"
     assert f'note = "way-points from t.csv; {said}"' in text
     assert f"\n# L{said[1:]}\nvelocity = [2.5, 3.5, 0.125]\n" in text
     assert 'velocity = ["rad/s", "rad/s", "m/s"]' in text
 
 
-def test_a_limit_that_is_given_takes_precedence_over_the_urdf(
-    run: Run, folder: Path, arm: str
-) -> None:
-    (folder / "t.csv").write_text("swing,turn\n10,20\n30,50\n", encoding="utf-8")
+def test_a_limit_that_is_given_comes_before_the_urdf(run: Run, folder: Path, arm: str) -> None:
+    (folder / "t.csv").write_text("swing,turn\n10,20\n30,50\n", "utf-8")
     given = ("--velocity", "30", "--velocity-unit", "deg/s", "--acceleration-unit", "deg/s^2")
     units = ("--position-unit", "deg", "--time-unit", "s")
     assert run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *given, *units)[0] == 0
@@ -152,7 +144,7 @@ def test_a_limit_that_is_given_takes_precedence_over_the_urdf(
     assert limits.velocity == pytest.approx(np.radians([30.0, 30.0]))
     assert limits.acceleration == pytest.approx([6.0, 9.0])
     assert limits.position_upper == pytest.approx([2.25, np.inf])
-    text = Path("out.toml").read_text(encoding="utf-8")
+    text = Path("out.toml").read_text("utf-8")
     assert "limits of acceleration and position from arm.urdf" in text
     assert 'acceleration = "deg/s^2"' in text
 
@@ -170,22 +162,20 @@ def test_joints_that_a_urdf_does_not_have(
     run: Run, folder: Path, arm: str, header: str, words: tuple[str, ...]
 ) -> None:
     row = ",".join("0.1" for _ in header.split(","))
-    (folder / "t.csv").write_text(f"{header}\n{row}\n{row}2\n", encoding="utf-8")
+    (folder / "t.csv").write_text(f"{header}\n{row}\n{row}2\n", "utf-8")
     units = ("--position-unit", "rad", "--time-unit", "s")
     assert_refused(run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *units), *words)
     assert not Path("out.toml").exists()
 
 
 def test_a_joint_that_lacks_a_limit_which_others_have(run: Run, folder: Path) -> None:
-    (folder / "arm.urdf").write_text(URDF.replace(' velocity="3.5"', ""), encoding="utf-8")
-    (folder / "t.csv").write_text(f"turn,swing,reach\n{ROWS}", encoding="utf-8")
+    (folder / "arm.urdf").write_text(URDF.replace(' velocity="3.5"', ""), "utf-8")
+    (folder / "t.csv").write_text(f"turn,swing,reach\n{ROWS}", "utf-8")
     ended = run("new", "out.toml", "--from", "t.csv", "--urdf", "arm.urdf", *UNITS)
     assert_refused(ended, "arm.urdf", "velocity of joint swing: no limit is stated")
 
 
-def test_new_tells_all_missing_units_and_wrong_options_at_once(
-    run: Run, table: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_new_tells_faults_at_once(run: Run, table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(""))
     given = ("--velocity", "2", "--jerk", "1,2,3,4,5,6,7", "--family", "bezier")
     ended = run("new", "out.toml", "--from", table, *given)

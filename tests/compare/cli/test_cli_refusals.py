@@ -57,12 +57,10 @@ def contents(folder: Path) -> dict[str, str]:
 
 @pytest.mark.usefixtures("no_computing")
 @pytest.mark.parametrize("one", EVERY, ids=lambda one: one.name[:60])
-def test_bad_input_is_one_line(
-    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, one: Refusal
-) -> None:
+def test_bad_input(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, one: Refusal) -> None:
     for name, text in (*FILES.items(), ("deep/mine.main.plain.joint-a.json", DEEP)):
         (folder / name).parent.mkdir(exist_ok=True)
-        (folder / name).write_text(text, encoding="utf-8")
+        (folder / name).write_text(text, "utf-8")
     before = contents(folder)
     monkeypatch.setattr(sys, "stdin", io.StringIO(""))
     ended = run(*shlex.split(one.name))
@@ -206,7 +204,7 @@ def test_a_draft_that_a_killed_command_left_stands_in_nobodys_way(run: Run, tmp_
 
 
 def test_labels_and_ids_of_any_length(run: Run) -> None:
-    Path("long.toml").write_text(LONG, encoding="utf-8")
+    Path("long.toml").write_text(LONG, "utf-8")
     options = ("--certify", "--gap", "0.1", "--time", "1", "--certificates", "certificates")
     code, _, err = run("solve", "long.toml", *options)
     assert err == ""

@@ -5,19 +5,21 @@ import os
 import re
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from support.checkout import ROOT
 from support.command_line import Run, on_terminal
 from support.small_studies import HEAD, optimizers
+from trajgap.compare import gaps
 from trajgap.compare.documents import percent
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
 
 PUMA = "puma560-mnam-pso-353"
 SMALL = ("--seeds", "2", "--budget", "90", "--no-baselines")
-DOC = (ROOT / "docs" / "reference" / "bench.md").read_text(encoding="utf-8")
-GUIDE = (ROOT / "docs" / "guides" / "enter-your-optimiser.md").read_text(encoding="utf-8")
+DOC = (ROOT / "docs/reference/bench.md").read_text("utf-8")
+GUIDE = (ROOT / "docs/guides/enter-your-optimiser.md").read_text("utf-8")
 
 
 def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
@@ -62,9 +64,7 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("budget", "said"), [("400", True), ("90", False)])
-def test_evaluations_beyond_the_budget_of_one_run_are_explained(
-    budget: str, said: bool, run: Run
-) -> None:
+def test_evaluations_beyond_a_budget_are_explained(budget: str, said: bool, run: Run) -> None:
     arguments = ("bench", "suite:353-3x1-v-1", "--optimizer", "pso", "--seeds", "8")
     out = run.done(*arguments, "--budget", budget, "--no-baselines")
     (row,) = (line for line in out.splitlines() if line.startswith("pso  "))
@@ -165,9 +165,7 @@ def test_an_optimiser_that_always_fails_stands_and_is_shown_by_the_exit_code(run
         (("--against", "board", "--optimizer", "pso"), "use leaderboard"),
     ],
 )
-def test_what_cannot_stand_against_the_leaderboard(
-    asked: tuple[str, ...], said: str, run: Run
-) -> None:
+def test_what_the_leaderboard_cannot_judge(asked: tuple[str, ...], said: str, run: Run) -> None:
     code, out, err = run("bench", *asked)
     assert (code, out) == (2, "")
     assert said in err
@@ -178,7 +176,7 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
     mine = re.search(r":caption: mine.py\n\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)
     assert mine
     assert len(mine[1].splitlines()) <= 10
-    (folder / "mine.py").write_text(mine[1], encoding="utf-8")
+    (folder / "mine.py").write_text(mine[1], "utf-8")
     code, out, err = run(
         "bench", PUMA, "--optimizer", "mine:evolve", "--seeds", "3", "--budget", "600",
         "--no-baselines",
@@ -206,7 +204,7 @@ FEW = FEW.replace('"pso"', '"pso"\nsettings = { particles = 10 }')
 @pytest.fixture(autouse=True)
 def study(folder: Path) -> Path:
     path = folder / "few.toml"
-    path.write_text(FEW, encoding="utf-8")
+    path.write_text(FEW, "utf-8")
     return path
 
 
@@ -234,35 +232,21 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
 
 
 def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:
-    study.write_text(
-        FEW.replace("support.optimizers:raises", "support.optimizers:raises_at_times").replace(
-            "seeds = 2", "seeds = 8"
-        ),
-        encoding="utf-8",
-    )
+    text = FEW.replace("optimizers:raises", "optimizers:raises_at_times")
+    study.write_text(text.replace("seeds = 2", "seeds = 8"), "utf-8")
     out = run.done("study", "few.toml", "--workers", "1")
     assert "times: ZeroDivisionError: at times" in out
 
 
-def test_the_command_that_goes_on_still_exports(
-    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from trajgap.compare import gaps
-
-    def interrupted(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(gaps, "run_study", interrupted)
-    code, out, err = run(
-        "study", "few.toml", "--export", "a b.csv", "--export", "few.ioh", "--workers", "1"
-    )
+def test_what_goes_on_exports(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gaps, "run_study", Mock(side_effect=KeyboardInterrupt))
+    exports = ("--export", "a b.csv", "--export", "few.ioh")
+    code, out, err = run("study", "few.toml", *exports, "--workers", "1")
     assert (code, out) == (130, "")
-    assert (
-        "`trajgap study few.toml --export 'a b.csv' --export few.ioh` continues from there" in err
-    )
+    assert "`trajgap study few.toml --export 'a b.csv' --export few.ioh` continues" in err
     assert not (folder / "few.ioh").exists()
     _, _, err = run("study", "few.toml", "--store", "kept.sqlite", "--workers", "1")
-    assert "`trajgap study few.toml --store kept.sqlite` continues from there" in err
+    assert "`trajgap study few.toml --store kept.sqlite` continues" in err
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from rich.cells import cell_len
@@ -34,7 +35,7 @@ ROWS = 'waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0"
 )
 def test_odd_problems_have_a_correct_result(run: Run, old: str, new: str, status: str) -> None:
     assert old in CASE
-    Path("odd.toml").write_text(CASE.replace(old, new), encoding="utf-8")
+    Path("odd.toml").write_text(CASE.replace(old, new), "utf-8")
     (one,) = run.document("solve", "odd.toml", "--coupling", "shared", kind="solve")["results"]
     assert one["status"] == status
     assert run("solve", "odd.toml", "--coupling", "shared")[0] == 0
@@ -65,16 +66,14 @@ def test_the_live_line_on_a_terminal() -> None:
 
 
 def test_no_color(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert "\x1b" not in run("cases")[1], "in a pipe"
+    monkeypatch.delenv("FORCE_COLOR")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
     assert "\x1b[1m" in run("show", "mine.toml")[1]
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b" not in run("show", "mine.toml")[1]
-
-
-def test_colours_stay_off_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    assert "\x1b" not in run("cases")[1]
 
 
 def test_no_digit_is_cut_off_in_a_narrow_window(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -101,9 +100,7 @@ def test_prose_shares_what_the_window_leaves() -> None:
 
 
 def test_nothing_from_a_file_steers_the_terminal(run: Run) -> None:
-    Path("evil.toml").write_text(
-        CASE.replace('"Mine"', '"[red]x\\u001b[31m\\u0007"'), encoding="utf-8"
-    )
+    Path("evil.toml").write_text(CASE.replace('"Mine"', '"[red]x\\u001b[31m\\u0007"'), "utf-8")
     out = run.done("show", "evil.toml")
     assert "[red]x<U+001B>[31m<U+0007>" in out
     assert "\x1b" not in out
@@ -128,12 +125,8 @@ def test_narrow_encodings(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("arguments", [("cases",), ("--help",)])
 def test_a_full_disk(arguments: tuple[str, ...]) -> None:
     with Path("/dev/full").open("w") as full:
-        done = subprocess.run(
-            [sys.executable, "-c", START, *arguments],
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        command = [sys.executable, "-c", START, *arguments]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert done.returncode == 2
     assert done.stderr.startswith("trajgap: standard output: cannot be written (No space")
     assert done.stderr.count("\n") == 1
@@ -155,29 +148,26 @@ def test_interrupted() -> None:
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
 
 
-def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stop(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("trajgap.compare.cli.solve_command.solve_per_joint", stop)
-    ended = run("solve", "mine.toml", "--out", "answer.json")
-    assert ended == (130, "", "trajgap: interrupted\n")
+@pytest.mark.parametrize(
+    ("error", "ended", "said"),
+    [
+        (KeyboardInterrupt, 130, r"trajgap: interrupted\n"),
+        (ZeroDivisionError, 70, r"(?s).+\ntrajgap: this is a bug .* report the lines above\n"),
+    ],
+)
+def test_what_is_raised_inside(
+    run: Run, monkeypatch: pytest.MonkeyPatch, error: type, ended: int, said: str
+) -> None:
+    inside = Mock(side_effect=error)
+    monkeypatch.setattr("trajgap.compare.cli.solve_command.solve_per_joint", inside)
+    code, out, err = run("solve", "mine.toml", "--out", "answer.json")
+    assert (code, out) == (ended, "")
+    assert re.fullmatch(said, err)
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
 
 
-def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object, **__: object) -> None:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr("trajgap.compare.cli.solve_command.solve_per_joint", fail)
-    code, out, err = run("solve", "mine.toml", "--out", "answer.json")
-    assert (code, out) == (70, "")
-    assert err.endswith("trajgap: this is a bug in trajgap; please report the lines above\n")
-    assert not Path("answer.json").exists()
-
-
 def test_every_enum_is_documented() -> None:
-    page = (ROOT / "docs" / "reference" / "command-line.md").read_text("utf-8")
+    page = (ROOT / "docs/reference/command-line.md").read_text("utf-8")
     for name, schema in SCHEMA["$defs"].items():
         for value in schema.get("enum", ()):
             assert f"`{value}`" in page, f"{name}: {value}"
@@ -185,14 +175,8 @@ def test_every_enum_is_documented() -> None:
 
 def test_two_transcriptions_are_compared(run: Run) -> None:
     Path("b.toml").write_text(CASE.replace('"1.7"', '"1.70"'))
-    for second, ended, differences in (
-        ("mine.toml", 0, []),
-        (
-            "b.toml",
-            1,
-            [{"field": "waypoints.waypoint_rows[2][1]", "first": '"1.7"', "second": '"1.70"'}],
-        ),
-    ):
+    only = {"field": "waypoints.waypoint_rows[2][1]", "first": '"1.7"', "second": '"1.70"'}
+    for second, ended, differences in (("mine.toml", 0, []), ("b.toml", 1, [only])):
         code, out, _ = run("case", "diff", "mine.toml", second, "--json")
         assert (code, strict(out)["differences"]) == (ended, differences)
     code, out, _ = run("case", "diff", "mine.toml", "b.toml")

@@ -12,8 +12,7 @@ from trajgap.problem import Coupling, Limits, Problem, fit, load_case, three_fiv
 
 
 @pytest.mark.parametrize(
-    "case_id",
-    [pytest.param("puma560-mnam-pso-353", marks=pytest.mark.slow), "irb460-pso-353"],
+    "case_id", [pytest.param("puma560-mnam-pso-353", marks=pytest.mark.slow), "irb460-pso-353"]
 )
 def test_python_and_the_command_line_solve_alike(run, case_id):
     shown = json.loads(run("solve", case_id, "--json")[1])["results"]
@@ -66,9 +65,7 @@ def test_a_number_longer_than_a_certificate_may_state_ends_nothing():
     assert shipped_file(exact_problem(same)) is None
 
 
-def test_the_same_motion_within_the_same_limits_is_timed_once(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_one_motion_within_the_same_limits_is_timed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
     monkeypatch.setattr(solving, "retime", lambda *given: asked.append(given) or retime(*given))
     q = np.array([[0.13], [0.81], [0.32], [1.07]])
@@ -79,9 +76,8 @@ def test_the_same_motion_within_the_same_limits_is_timed_once(
     slower = replace(answer, problem=replace(problem, limits=Limits([1.6], [3.0])))
     mirrored = replace(answer, problem=replace(problem, waypoints=-q))
     known: solving._Retimings = {}
-    found = [
-        solving._retimed(one, known) for one in (answer, longer, bounded, slower, mirrored, answer)
-    ]
+    answers = (answer, longer, bounded, slower, mirrored, answer)
+    found = [solving._retimed(one, known) for one in answers]
     assert len(asked) == 4
     assert found[2] is found[0] is found[5]
     for one, said in zip((answer, longer, bounded, slower, mirrored), found, strict=False):

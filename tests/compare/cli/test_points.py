@@ -19,7 +19,7 @@ def table(tmp_path: Path) -> str:
     write_arm(tmp_path)
     rows = "\n".join(",".join(map(str, row)) for row in POINTS)
     path = tmp_path / "points.csv"
-    path.write_text(f"shoulder,elbow\n{rows}\n", encoding="utf-8")
+    path.write_text(f"shoulder,elbow\n{rows}\n", "utf-8")
     return str(path)
 
 
@@ -44,9 +44,7 @@ def test_the_urdf_limits_the_joints_and_where_they_go(run: Run, table: str) -> N
     urdf = str(Path(table).parent / "arm.urdf")
     curve = ("--units", "deg", "--family", "quintic-spline")
     # The total is that of the stricter problem, and says so.
-    found = answered(
-        run, table, "--urdf", urdf, *curve, said="its own limit at joint shoulder; here"
-    )
+    found = answered(run, table, "--urdf", urdf, *curve, said="its own limit at joint shoulder")
     limits = read_urdf(Path(urdf)).for_joints(("shoulder", "elbow"))
     problem = Problem(np.radians(POINTS), limits.two_sided, quintic_spline(2))
     best = solve(problem, prove=0)
@@ -68,8 +66,8 @@ def test_joints_that_are_only_numbered_are_those_of_the_urdf(run: Run, table: st
     urdf, path = Path(table).parent / "arm.urdf", Path(table)
     arguments = (table, "--urdf", str(urdf), "--units", "deg", "--family", "cubic-spline-virtual")
     named = answered(run, *arguments, said="its own limit at joint shoulder; here")
-    text = path.read_text(encoding="utf-8")
-    path.write_text(text.replace("shoulder,elbow", "1,2"), encoding="utf-8")
+    text = path.read_text("utf-8")
+    path.write_text(text.replace("shoulder,elbow", "1,2"), "utf-8")
     numbered = answered(run, *arguments, said="its own limit at joint shoulder; here")
     assert numbered["total_time"] == named["total_time"]
     assert [one["joint"] for one in numbered["active"]] == [one["joint"] for one in named["active"]]
@@ -91,7 +89,5 @@ def test_what_cannot_be_used_is_refused(
 
 
 def test_a_case_states_its_own_limits_and_curve(run: Run) -> None:
-    assert_refused(
-        run("solve", "mine.toml", "--velocity", "1"), "--velocity", "table of way-points"
-    )
+    assert_refused(run("solve", "mine.toml", "--velocity", "1"), "--velocity", "of way-points")
     assert_refused(run("solve", "mine.toml", "--family", "3-5-3"), "--family")

@@ -51,9 +51,7 @@ def test_json_of_the_table_and_of_one(run: Run, folder: Path) -> None:
     assert shown["verify"].startswith("python -m trajgap.verify ")
 
 
-def test_show_says_how_to_verify_and_the_command_does(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_show_says_how_to_verify_and_it_works(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     out = run.done("suite", "show", "353-irb460")
     one = load_instance("353-irb460")
     assert f"between {one.lower!r} and {one.upper!r}" in out
@@ -85,9 +83,7 @@ def test_an_export_is_whole_and_needs_no_trajgap(run: Run, folder: Path) -> None
     assert run("suite", "export", "all")[0] == 0, "an earlier export is replaced"
 
 
-def test_show_of_an_instance_whose_certificate_is_not_shipped(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_show_without_a_shipped_certificate(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(BenchmarkInstance, "certificate_file", lambda _: None)
     one = load_instance("353-irb460")
     out = run.done("suite", "show", one.name)
@@ -100,7 +96,7 @@ def test_the_documented_commands_verify_an_export(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """docs/suite/index.md: each command as it stands there, in the order in which it stands."""
-    page = (ROOT / "docs" / "suite" / "index.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/suite/index.md").read_text("utf-8")
     first, second, copied = re.findall(
         r"^(trajgap suite export suite\ncd suite|python -m trajgap\.verify .*|python -I .*)$",
         page, re.MULTILINE,
@@ -113,9 +109,7 @@ def test_the_documented_commands_verify_an_export(
     for command in (second, copied):
         words = shlex.split(command)
         assert Path(words[-1]).is_file()
-        done = subprocess.run(
-            [sys.executable, *words[1:]], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         assert "proves: the least total" in done.stdout
     program = re.search(r"^```python\n(one = load.*?)^```$", page, re.MULTILINE | re.DOTALL)

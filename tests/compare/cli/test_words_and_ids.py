@@ -70,11 +70,9 @@ COUNTS: list[tuple[str, dict[str, int]]] = [
 
 
 @pytest.mark.parametrize(("command", "counts"), COUNTS, ids=lambda value: str(value)[:50])
-def test_words_and_ids_stand_as_often_as_they_should(
-    run: Run, command: str, counts: dict[str, int]
-) -> None:
+def test_how_often_words_and_ids_stand(run: Run, command: str, counts: dict[str, int]) -> None:
     for name, text in FILES.items():
-        Path(name).write_text(text, encoding="utf-8")
+        Path(name).write_text(text, "utf-8")
     out = run.done(*command.split())
     plain = " ".join(out.split())
     assert {words: plain.count(words) for words in counts} == counts

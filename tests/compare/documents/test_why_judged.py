@@ -41,9 +41,8 @@ def said(readings: str, message: str, verdict: str = "refuted", kind: str = "bre
 def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() -> None:
     named = Named(LABELS, {"b": "57 times too slow"}, "a")
     assert under(("b",), READINGS, named) == "under the implausible “second”"
-    assert under(("b",), READINGS, named, why=True) == (
-        "under the implausible “second” (57 times too slow)"
-    )
+    said = "under the implausible “second” (57 times too slow)"
+    assert under(("b",), READINGS, named, why=True) == said
 
 
 def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default() -> None:
@@ -95,26 +94,14 @@ def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_l
 
 
 def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ() -> None:
-    (one,) = grouped(
-        [
-            Said("refuted", "TG101", "k", ("always.", "So.")),
-        ],
-        READINGS,
-        NAMED,
-    )
+    (one,) = grouped([Said("refuted", "TG101", "k", ("always.", "So."))], READINGS, NAMED)
     assert with_readings(one, READINGS, NAMED) == ("always.", "So.")
-    assert with_readings(one, READINGS, NAMED, word=True) == (
-        "Under every reading: always.",
-        "So.",
-    )
+    assert with_readings(one, READINGS, NAMED, word=True) == ("Under every reading: always.", "So.")
 
 
 def test_whole_sentences_stand_in_the_open_one_at_least() -> None:
     assert opened(("One two three.", "Four."), 2) == (("One two three.",), ("Four.",))
-    assert opened(("One two.", "Three.", "Four five."), 3) == (
-        ("One two.", "Three."),
-        ("Four five.",),
-    )
+    assert opened(("One two.", "Three.", "Four."), 3) == (("One two.", "Three."), ("Four.",))
     long = ("It breaks a limit.", *["Word after word."] * 30)
     assert judged(R, sentences=long).opening == " ".join(long[:19])
     assert judged(R, sentences=long[:3]).opening is None
@@ -165,7 +152,7 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
     ],
 )
 def test_a_gap_in_words(lowest: float, highest: float, words: str) -> None:
-    gap = Gap(
+    one = Gap(
         kind=GapKind.OPTIMALITY, lowest=lowest, highest=highest, reference=Reference(upper=1.0)
     )
-    assert apart(gap) == words
+    assert apart(one) == words

@@ -170,9 +170,7 @@ def test_hits_targets_and_bands_of_known_traces() -> None:
         ([np.inf, 1.0, np.inf, 2.0], (1.0, 1.5, np.inf, np.inf)),
     ],
 )
-def test_quantiles_between_two_runs_are_their_mean(
-    values: list[float], expected: tuple[float, ...]
-) -> None:
+def test_quantiles_between_runs_are_means(values: list[float], expected: tuple[float, ...]) -> None:
     assert quantiles(np.array(values), (0.0, 0.25, 0.5, 0.75)).tolist() == list(expected)
 
 
@@ -292,19 +290,15 @@ def test_an_optimiser_that_always_fails_stands_last_with_its_message() -> None:
 def test_failing_is_not_cheap() -> None:
     trial = Trial(TOY, "toy", "", "random", budget=1000)
     rows = (row([(8, float(EXACT.sum()))], 20), failed(trial, "raised"))
-    found = bench_result(
-        {"half": rows}, float(EXACT.sum()), problem="", reading="", budget=1000, seeds=2
-    )
+    found = bench_result({"half": rows}, EXACT.sum(), problem="", reading="", budget=1000, seeds=2)
     assert found.standings[0].targets[-1].evaluations == 8 + 1000
 
 
 def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     result = measure_gaps(runs, float(EXACT.sum()))
     assert_valid(json.loads(json_text(BenchDocument(results=(result,)))), "bench")
-    picture = bench_picture(result, runs)
-    assert all(
-        f"{one.optimizer}: {one.runs} run" in picture.description for one in result.standings
-    )
+    drawn = bench_picture(result, runs)
+    assert all(f"{one.optimizer}: {one.runs} run" in drawn.description for one in result.standings)
     out = tmp_path / "out"
     write_bench([(result, runs)], out)
     page = (out / "index.html").read_text("utf-8")

@@ -83,9 +83,8 @@ def test_a_run_at_which_workers_of_dask_die_is_reported() -> None:
     engine = Engine(failing(KilledWorker()), lambda: 1, "far")
     (outcome,) = outcomes([small_trial()], engine)
     assert outcome.row.status is RowStatus.FAILED
-    assert (
-        outcome.row.message == "support.optimizers:draws: workers died repeatedly while running it"
-    )
+    said = "support.optimizers:draws: workers died repeatedly while running it"
+    assert outcome.row.message == said
 
 
 CLOSED = ThreadPoolExecutor(1)

@@ -136,9 +136,7 @@ def test_several_budgets_have_runs_of_their_own() -> None:
         parse_study(text.replace("1000", "100"), "few.toml", Path())
 
 
-def test_optimisers_of_missing_packages_are_left_out_only_where_the_file_says_so(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_missing_packages_are_left_out_if_the_file_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cma", None)
     text = HEAD + '[[optimizers]]\nname = "random"\n[[optimizers]]\nname = "cma"\n'
     with pytest.raises(CaseError, match="pip install cma"):

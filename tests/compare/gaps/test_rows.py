@@ -211,9 +211,7 @@ def test_a_store_of_another_version_is_not_touched(path: Path) -> None:
     Store(path).close()
     with sqlite3.connect(path) as other:
         other.execute("PRAGMA user_version = 99")
-    with pytest.raises(
-        CaseError, match=r"contains rows of version 99, but this program writes 1; give"
-    ):
+    with pytest.raises(CaseError, match=r"contains rows of version 99, but this program writes 1;"):
         Store(path)
 
 
@@ -365,12 +363,12 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
     data = manager.load(monotonic=False)
     for run, row in zip(runs, [rows[3], rows[0], rows[1], more[0]], strict=True):
         lines = data.filter(data["data_id"] == run["data_id"])
-        points = list(zip(lines["evaluations"], lines["raw_y"], strict=True))
-        assert points[0][0] == 1
-        assert points[-1][0] == row.evaluations
-        assert [p for p in points if p in row.trace] == list(row.trace)
+        dots = list(zip(lines["evaluations"], lines["raw_y"], strict=True))
+        assert dots[0][0] == 1
+        assert dots[-1][0] == row.evaluations
+        assert [p for p in dots if p in row.trace] == list(row.trace)
         assert all(
-            y == sys.float_info.max for at, y in points if not row.trace or at < row.trace[0][0]
+            y == sys.float_info.max for at, y in dots if not row.trace or at < row.trace[0][0]
         )
 
 

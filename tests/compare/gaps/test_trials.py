@@ -62,15 +62,14 @@ def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["overspends", "scribbles", "returns_short", "forks", "leaves_traces", "warns"],
+    "name", ["overspends", "scribbles", "returns_short", "forks", "leaves_traces", "warns"]
 )
 def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
     before, floats = run_trial(small_trial("support.optimizers:draws")), np.geterr()
     row = run_trial(small_trial(f"support.optimizers:{name}"))
     with (tmp_path / "returned").open("a", encoding="utf-8") as file:
         file.write(row.status)
-    assert (tmp_path / "returned").read_text(encoding="utf-8") == "finished", "by one process"
+    assert (tmp_path / "returned").read_text("utf-8") == "finished", "by one process"
     assert row.evaluations == 200 or name not in ("overspends", "scribbles", "returns_short")
     if name in ("scribbles", "returns_short", "forks"):
         assert (row.durations, row.trace) == (before.durations, before.trace)
@@ -186,21 +185,19 @@ def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Processes, tmp_path
     trial = small_trial("support.optimizers:forks_and_leaves", settings=settings, seconds=60)
     row = run_apart(trial, going_on).row
     assert row.message.endswith("its process ended 2 times (SIGKILL)")
-    left = int(mark.read_text(encoding="utf-8"))
+    left = int(mark.read_text("utf-8"))
     assert run_apart(small_trial(), going_on).row.status is RowStatus.FINISHED
     assert is_gone(left)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems know no subreaper")
 @pytest.mark.parametrize("how", ["the pool ends", "the trial dies", "the parent is gone"])
-def test_a_grandchild_in_a_session_of_its_own_ends_too(
-    processes: Processes, tmp_path: Path, how: str
-) -> None:
+def test_grandchildren_in_a_session_end(processes: Processes, tmp_path: Path, how: str) -> None:
     mark = tmp_path / "mark"
     settings = canonical({"mark": str(mark), "dies": how == "the trial dies"})
     trial = small_trial("support.optimizers:leaves_a_grandchild", settings=settings, seconds=60)
     row = run_apart(trial, processes).row
-    left = [int(line) for line in mark.read_text(encoding="utf-8").split()]
+    left = [int(line) for line in mark.read_text("utf-8").split()]
     if how == "the trial dies":
         assert row.message.endswith("its process ended 2 times (SIGKILL)")
         assert len(left) == 2

@@ -25,4 +25,4 @@ def folder(report: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 @pytest.fixture(scope="session")
 def page(folder: Path) -> Tree:
-    return Tree((folder / f"{ID}.html").read_text(encoding="utf-8"))
+    return Tree((folder / f"{ID}.html").read_text("utf-8"))

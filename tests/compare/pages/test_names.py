@@ -53,7 +53,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", ["dash", "dash-waterfall"])
 def test_no_id_stands_twice_in_a_page(folder: Path, name: str) -> None:
-    page = (folder / f"{name}.html").read_text(encoding="utf-8")
+    page = (folder / f"{name}.html").read_text("utf-8")
     ids = Counter(re.findall(r'\bid="([^"]+)"', page))
     assert [one for one, count in ids.items() if count > 1] == []
     assert set(re.findall(r'href="#([^"]+)"', page)) <= ids.keys()
@@ -69,25 +69,25 @@ def test_every_waterfall_has_its_picture(folder: Path) -> None:
                 drawn = file_name("waterfall", problem, reading)
                 file = folder / "pictures" / f"{file_name(case, drawn)}.svg"
                 files.remove(file)
-                root = ElementTree.fromstring(file.read_text(encoding="utf-8"))
+                root = ElementTree.fromstring(file.read_text("utf-8"))
                 title = root.findtext("{http://www.w3.org/2000/svg}title")
                 assert title == f"Where the time goes: {problem}; {named[reading]}"
                 for end in ("html", "md"):
-                    page = (folder / f"{case}.{end}").read_text(encoding="utf-8")
+                    page = (folder / f"{case}.{end}").read_text("utf-8")
                     assert f"pictures/{file.name}" in page
     assert len(files) >= 2 * 4
     check_report_folder(folder)
     known = folder / "pictures" / "dash-waterfall-a-b-c.svg"  # as pictures were called once
-    known.write_text("<svg/>", encoding="utf-8")
+    known.write_text("<svg/>", "utf-8")
     check_report_folder(folder)
     known.unlink()
 
 
 def test_what_hides_or_steers_is_shown(folder: Path) -> None:
-    index = (folder / "index.html").read_text(encoding="utf-8")
-    page = (folder / "dash.html").read_text(encoding="utf-8")
-    text = (folder / "dash.md").read_text(encoding="utf-8")
-    whole = (folder / "audit.json").read_text(encoding="utf-8")
+    index = (folder / "index.html").read_text("utf-8")
+    page = (folder / "dash.html").read_text("utf-8")
+    text = (folder / "dash.md").read_text("utf-8")
+    whole = (folder / "audit.json").read_text("utf-8")
     for one in (index, page, text, whole):
         assert HIDES.search(one) is None
     for one in (index, page):
@@ -95,7 +95,7 @@ def test_what_hides_or_steers_is_shown(folder: Path) -> None:
     assert re.sub(r"([<>\[])", r"\\\1", SHOWN) in text
     assert "\\u202e" in whole
     for file in (folder / "pictures").iterdir():
-        assert HIDES.search(file.read_text(encoding="utf-8")) is None
+        assert HIDES.search(file.read_text("utf-8")) is None
 
 
 def test_every_block_of_markdown_shows_it() -> None:

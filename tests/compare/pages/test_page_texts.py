@@ -13,21 +13,8 @@ from support.toml_text import Bare
 from trajgap.compare.audits import KEPT
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
-from trajgap.compare.blocks import (
-    Cell,
-    Folded,
-    Grid,
-    Page,
-    Prose,
-    Section,
-)
-from trajgap.compare.documents import (
-    ClaimVerdict,
-    Keeping,
-    Step,
-    Waterfall,
-    Why,
-)
+from trajgap.compare.blocks import Cell, Folded, Grid, Page, Prose, Section
+from trajgap.compare.documents import ClaimVerdict, Keeping, Step, Waterfall, Why
 from trajgap.compare.pages.motions_shown import _totals
 from trajgap.compare.pages.numbers import both_units, where_time_goes
 from trajgap.compare.pages.rendering import environment, markdown, style

@@ -32,7 +32,7 @@ def flat(text: str) -> str:
 
 @pytest.mark.parametrize("name", ["index", "glossary", ID])
 def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) -> None:
-    text = (folder / f"{name}.html").read_text(encoding="utf-8")
+    text = (folder / f"{name}.html").read_text("utf-8")
     for attributes in Tree(text).found:
         tag = attributes["tag"]
         if (tag, attributes.get("rel")) == ("link", "icon"):
@@ -50,15 +50,13 @@ def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) ->
 
 
 @pytest.mark.parametrize("name", ["index", "glossary", ID])
-def test_a_page_carries_its_icon_so_that_no_browser_asks_a_server_for_one(
-    folder: Path, name: str
-) -> None:
-    seen = Tree((folder / f"{name}.html").read_text(encoding="utf-8"))
+def test_a_page_carries_its_icon_so_no_browser_asks_for_one(folder: Path, name: str) -> None:
+    seen = Tree((folder / f"{name}.html").read_text("utf-8"))
     (icon,) = seen.every("link")
     kind, _, picture = str(icon["href"]).partition(",")
     assert (icon["rel"], kind) == ("icon", "data:image/svg+xml")
     drawn = ElementTree.fromstring(unquote(picture))
-    mark = ElementTree.parse(ROOT / "docs" / "_static" / "mark.svg").getroot()
+    mark = ElementTree.parse(ROOT / "docs/_static/mark.svg").getroot()
     assert ElementTree.canonicalize(ElementTree.tostring(drawn)) == ElementTree.canonicalize(
         ElementTree.tostring(mark)
     )
@@ -72,7 +70,7 @@ def test_a_doi_is_a_link_only_if_it_is_one() -> None:
 
 def test_every_link_leads_somewhere(folder: Path) -> None:
     pages = {
-        name: Tree((folder / f"{name}.html").read_text(encoding="utf-8"))
+        name: Tree((folder / f"{name}.html").read_text("utf-8"))
         for name in ("index", "glossary", ID)
     }
     ids = {name: [a["id"] for a in seen.found if a.get("id")] for name, seen in pages.items()}
@@ -92,7 +90,7 @@ def test_every_picture_is_xml_and_stands_in_the_page(folder: Path, page: Tree) -
     assert len(drawn) >= 12
     for file in drawn:
         assert file.name.startswith(f"{ID}-")
-        root = ElementTree.fromstring(file.read_text(encoding="utf-8"))
+        root = ElementTree.fromstring(file.read_text("utf-8"))
         assert root.findtext("{http://www.w3.org/2000/svg}title")
         assert root.findtext("{http://www.w3.org/2000/svg}desc")
     # The one beside the card stands in the page, the others are fetched when unfolded.
@@ -103,7 +101,7 @@ def test_every_picture_is_xml_and_stands_in_the_page(folder: Path, page: Tree) -
 
 
 def test_no_text_of_a_case_is_markup_in_markdown(folder: Path) -> None:
-    text = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    text = (folder / f"{ID}.md").read_text("utf-8")
     assert not re.search(r"(?<!\\)<(?!br>)", text)
     links = re.findall(r"(?<!\\)\]\(([^)]*)\)", text)
     assert links
@@ -113,7 +111,7 @@ def test_no_text_of_a_case_is_markup_in_markdown(folder: Path) -> None:
 
 
 def test_tables_in_markdown_have_as_many_cells_as_columns(folder: Path) -> None:
-    text = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    text = (folder / f"{ID}.md").read_text("utf-8")
     width, rows = 0, 0
     for line in text.splitlines():
         cells = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else 0
@@ -124,12 +122,10 @@ def test_tables_in_markdown_have_as_many_cells_as_columns(folder: Path) -> None:
     assert rows > 40
 
 
-def test_every_claim_stands_with_its_digits_and_verdict(
-    page: Tree, folder: Path, report: AuditReport
-) -> None:
+def test_claims_have_digits_and_verdict(page: Tree, folder: Path, report: AuditReport) -> None:
     one = report.cases[0]
     anchors = {a.get("id") for a in page.found}
-    written = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    written = (folder / f"{ID}.md").read_text("utf-8")
     with sketched():
         sections = case_page(one).sections
     blocks = [block for section in sections for block in section.blocks]
@@ -147,17 +143,15 @@ def test_every_claim_stands_with_its_digits_and_verdict(
     assert "0.7615, 0.3854, 0.4572 s" in page.words
 
 
-def test_the_card_stands_on_top_in_page_markdown_and_index(
-    page: Tree, folder: Path, report: AuditReport
-) -> None:
+def test_the_card_is_on_top_of_all_pages(page: Tree, folder: Path, report: AuditReport) -> None:
     card = report.cases[0].card
     assert card.words <= CARD_WORDS
     first = page.words.index(flat(card.limits))
     for sentence in card.sentences:
         assert flat(sentence) in page.words
     assert first < page.words.index("Claims refuted, contradicted or dependent on the reading")
-    index = Tree((folder / "index.html").read_text(encoding="utf-8"))
-    written = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    index = Tree((folder / "index.html").read_text("utf-8"))
+    written = (folder / f"{ID}.md").read_text("utf-8")
     assert flat(card.limits) in index.words
     assert written.index(plain(card.limits)) < written.index("## Claims refuted")
 
@@ -187,7 +181,7 @@ def test_what_the_document_says_stands_on_the_page(page: Tree, report: AuditRepo
 
 
 def test_every_word_of_the_vocabulary_is_explained_once(folder: Path, page: Tree) -> None:
-    glossary = Tree((folder / "glossary.html").read_text(encoding="utf-8"))
+    glossary = Tree((folder / "glossary.html").read_text("utf-8"))
     anchors = [a.get("id") for a in glossary.found]
     assert not [a for a in page.found if a.get("id", "").startswith("word-")]
     vocabulary = ["reading", "relaxed family", "TOPPRA", "any curve through the way-points"]

@@ -25,10 +25,8 @@ from trajgap.problem import TrajgapError, load_case
 from trajgap.verify import verify_certificate
 
 
-def content(folder: Path) -> dict[str, bytes]:
-    return {
-        p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()
-    }
+def content(top: Path) -> dict[str, bytes]:
+    return {p.relative_to(top).as_posix(): p.read_bytes() for p in top.rglob("*") if p.is_file()}
 
 
 @pytest.mark.slow
@@ -74,16 +72,14 @@ def refuses(report: AuditReport, out: Path, message: str) -> None:
         ("a pipe", "audit.json"),
     ],
 )
-def test_a_folder_with_other_files_is_left_alone(
-    tmp_path: Path, mark: str | None, named: str
-) -> None:
+def test_folders_of_other_files_are_left(tmp_path: Path, mark: str | None, named: str) -> None:
     out = tmp_path / "mine"
     out.mkdir()
-    (out / "notes.txt").write_text("mine", encoding="utf-8")
+    (out / "notes.txt").write_text("mine", "utf-8")
     if mark == "a pipe":
         os.mkfifo(out / MARK)
     elif mark is not None:
-        (out / MARK).write_text(mark, encoding="utf-8")
+        (out / MARK).write_text(mark, "utf-8")
     before = content(out)
     refuses(NOTHING, out, f"contains {re.escape(named)}, which is not an audit; give a new")
     assert content(out) == before
@@ -92,7 +88,7 @@ def test_a_folder_with_other_files_is_left_alone(
 def test_what_would_share_names_or_lie_over_files_is_refused(
     folder: Path, report: AuditReport, tmp_path: Path
 ) -> None:
-    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    (tmp_path / "file").write_text("mine", "utf-8")
     (tmp_path / "target").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "target")
     shutil.copytree(folder, tmp_path / "audit")
@@ -139,7 +135,7 @@ def test_columns_without_any_entry_are_left_out() -> None:
 
 
 def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
-    page = (ROOT / "docs/reference/command-line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/reference/command-line.md").read_text("utf-8")
     named = page[page.index("Words that do not apply are null alone.") :].split("\n- ")[0]
     alone = set()
 
@@ -153,7 +149,7 @@ def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
             for inner in value:
                 walk(inner)
 
-    walk(json.loads((folder / MARK).read_text(encoding="utf-8"))["cases"])
+    walk(json.loads((folder / MARK).read_text("utf-8"))["cases"])
     assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))
 
 
@@ -163,7 +159,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = source(ID)
     assert "{ iterations = 100 }" in text
     file = tmp_path_factory.mktemp("case") / f"{ID}.toml"
-    file.write_text(text.replace("{ iterations = 100 }", "{ iterations = 3 }"), encoding="utf-8")
+    file.write_text(text.replace("{ iterations = 100 }", "{ iterations = 3 }"), "utf-8")
     return file
 
 
@@ -214,10 +210,8 @@ def test_certificates_in_a_crate_prove_again(archive: Path) -> None:
         assert verify_certificate(json.loads(packed.read(name))).proves, name
 
 
-def test_a_case_file_that_has_changed_is_refused(
-    quick: AuditReport, archive: Path, file: Path
-) -> None:
+def test_a_changed_case_file_is_refused(quick: AuditReport, archive: Path, file: Path) -> None:
     del archive  # made before
-    file.write_text(file.read_text("utf-8") + "\n# later\n", encoding="utf-8")
+    file.write_text(file.read_text("utf-8") + "\n# later\n", "utf-8")
     with pytest.raises(TrajgapError, match=r"has changed since the audit began; audit it again"):
         crate_of(quick)

@@ -93,9 +93,8 @@ def test_the_marked_values_are_those_of_the_verdict() -> None:
     limits = held(motion, velocity=4.0, acceleration=[8.0, 90.0])
     _, found, grid = drawn(motion, limits)
     for peak in found.peaks:
-        axes = grid[motion.joints.index(peak.joint)][
-            ("velocity", "acceleration").index(peak.quantity) + 1
-        ]
+        order = ("position", "velocity", "acceleration", "jerk").index(peak.quantity)
+        axes = grid[motion.joints.index(peak.joint)][order]
         (mark,) = [a for a in axes.lines if a.get_marker() == "o"]
         assert mark.get_xydata().tolist() == [[peak.time, peak.value]]  # type: ignore[union-attr]
         assert mark.get_color() == (RED if peak.ratio > 1 else INK)
@@ -230,9 +229,8 @@ def test_samples_are_dots_with_what_neighbours_prove() -> None:
         dots = next(a for a in grid[j][1].lines if a.get_marker() == ".")
         middles = 0.5 * (time[1:] + time[:-1])
         np.testing.assert_allclose(dots.get_xdata(), middles)
-        np.testing.assert_allclose(
-            dots.get_ydata(), np.diff(position[:, j]) / np.diff(time), rtol=1e-12
-        )
+        slopes = np.diff(position[:, j]) / np.diff(time)
+        np.testing.assert_allclose(dots.get_ydata(), slopes, rtol=1e-12)
         assert dots.get_linestyle() == "None"
     assert not spans(grid[0][1], RED)
     over = np.abs(np.diff(position[:, 1]) / np.diff(time)) > 1.5
@@ -243,10 +241,8 @@ def test_dots_that_say_nothing_of_a_limit_are_left_out() -> None:
     time = np.linspace(0.0, 1.0, 501)
     samples = Samples(("one",), time, np.sin(time)[:, None], noise=1e-3)
     _, _, grid = drawn(samples, JointLimits.from_values(("one",), velocity=2.0, jerk=10.0))
-    velocity, _, jerk = (
-        next(a for a in grid[0][r].lines if a.get_marker() == ".") for r in (1, 2, 3)
-    )
-    assert len(velocity.get_xdata()) == 500  # known to within 1 rad/s
+    speed, _, jerk = (next(a for a in grid[0][r].lines if a.get_marker() == ".") for r in (1, 2, 3))
+    assert len(speed.get_xdata()) == 500  # known to within 1 rad/s
     assert len(jerk.get_xdata()) == 0
     assert spans(grid[0][1], ORANGE) == []
 

@@ -31,9 +31,7 @@ def test_every_picture_is_sound(pictures: dict[str, Picture], name: str) -> None
     sound(lambda: pictures[name])
 
 
-def test_a_picture_does_not_depend_on_the_users_settings_or_on_earlier_pictures(
-    problem: Problem,
-) -> None:
+def test_a_picture_does_not_depend_on_users_settings_or_earlier_pictures(problem: Problem) -> None:
     plain = svg(motion_picture(problem, DURATIONS, title="Motion"))
     settings = {
         "font.size": 20,

@@ -125,22 +125,22 @@ def described(svg: str) -> str:
 def test_pictures_in_the_documents_carry_todays_numbers() -> None:
     programs = runpy.run_path(str(ROOT / "docs/make_pictures.py"))
     made = {**dict(programs["exhibits"]()), "papers": programs["papers"]()}
-    pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
-    pages += (ROOT / "README.md").read_text(encoding="utf-8")
+    pages = "".join(page.read_text("utf-8") for page in (ROOT / "docs").rglob("*.md"))
+    pages += (ROOT / "README.md").read_text("utf-8")
     for name, document in made.items():
-        shown = (ROOT / f"docs/pictures/{name}.svg").read_text(encoding="utf-8")
+        shown = (ROOT / f"docs/pictures/{name}.svg").read_text("utf-8")
         assert described(shown) == described(document), "run `python docs/make_pictures.py`"
         assert f"pictures/{name}.svg" in pages
 
 
 def arm_shown() -> dict:
-    page = (ROOT / "docs/pictures/arm-puma560.html").read_text(encoding="utf-8")
+    page = (ROOT / "docs/pictures/arm-puma560.html").read_text("utf-8")
     return json.loads(re.search(r'<script type="application/json">(.*?)</script>', page)[1])
 
 
 def test_the_arm_in_the_gallery_carries_the_times_of_the_results() -> None:
     path = ROOT / "docs/results/puma560-mnam-pso-353.json"
-    steps = json.loads(path.read_text(encoding="utf-8"))["cases"][0]["waterfalls"][0]["steps"]
+    steps = json.loads(path.read_text("utf-8"))["cases"][0]["waterfalls"][0]["steps"]
     times = {step["name"]: step["time"] for step in steps}
     shared = times["optimum of the same curve, shared durations"]
     printed, best, retimed = arm_shown()["totals"]

@@ -22,9 +22,7 @@ def words(picture: Picture) -> str:
     return "\n".join(t.get_text() for t in picture.findobj(Text) if t.get_visible())
 
 
-def test_the_waterfall_shows_every_value_its_evidence_and_every_reason(
-    pictures: dict[str, Picture],
-) -> None:
+def test_the_waterfall_shows_all_values_evidence_and_reasons(pictures: dict[str, Picture]) -> None:
     text = words(pictures["waterfall"])
     for step in STEPS:
         assert (step.note if isinstance(step.time, Why) else step.total()) in text
@@ -87,9 +85,7 @@ def test_runs_without_an_answer_are_counted_not_drawn(runs: dict[str, list[Run]]
     assert "1 runs, none with an answer" in words(picture)
 
 
-def test_convergence_needs_runs_and_one_optimum_for_each_problem(
-    joint_runs: dict[str, list[JointRuns]],
-) -> None:
+def test_convergence_needs_runs_and_all_optima(joint_runs: dict[str, list[JointRuns]]) -> None:
     for runs, optima, said in (
         ({}, 1.0, "convergence: no runs to draw"),
         (joint_runs, 1.0, "1 optima for 2 searched problems; give one each"),
@@ -152,7 +148,7 @@ def test_shares_whose_path_leaves_its_range_are_hatched() -> None:
 
 
 def test_the_dark_colours_are_those_of_the_pages() -> None:
-    style = (ROOT / "compare/pages/templates/style.css").read_text(encoding="utf-8")
+    style = (ROOT / "compare/pages/templates/style.css").read_text("utf-8")
     dark = style.split("prefers-color-scheme: dark")[1].split("}")[0]
     for name, colour in DARK.items():
         assert f"--{name}: {colour};" in dark

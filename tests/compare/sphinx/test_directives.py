@@ -13,7 +13,7 @@ from trajgap.problem.suite import list_instances, select_curve
 
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
 def test_a_place_that_every_row_shares_is_said_once(name):
-    case = Results(ROOT / "docs" / "results").audited(name)
+    case = Results(ROOT / "docs/results").audited(name)
     *said, shown, ids = readings_of(case)
     outcomes = case.readings.outcomes
     assert ids.title == "Ids of the readings"
@@ -55,9 +55,7 @@ def test_words_are_read_in_their_order(option: str, words: list[str]) -> None:
     ],
 )
 def test_a_word_that_no_claim_can_have_is_an_error(option: str, wrong: str) -> None:
-    with pytest.raises(
-        TrajgapError, match=f":verdict: '{wrong}' is no verdict on a claim"
-    ) as caught:
+    with pytest.raises(TrajgapError, match=f":verdict: '{wrong}' is no verdict on") as caught:
         wanted_words(option)
     assert all(str(word) in str(caught.value) for word in ClaimVerdict)
 

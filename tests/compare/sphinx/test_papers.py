@@ -7,7 +7,7 @@ from trajgap.compare.documents import StatedSource, Why, known
 from trajgap.compare.sphinx import Results, paper_row, paper_rows, papers_drawn
 from trajgap.compare.sphinx.papers import Distance, cited
 
-RESULTS = Results(ROOT / "docs" / "results")
+RESULTS = Results(ROOT / "docs/results")
 
 
 def source(authors: str, year: int | None = 2024, title: str = "On time") -> StatedSource:
@@ -53,10 +53,7 @@ def test_what_is_worth_reading_stands_first() -> None:
         # A total that rounds to below its optimum, without a minus sign.
         ("robotics1-2016-04-01", ("3.6926", "3.6926", "the optimum", "certified")),
         # 3.528/3.4128 and 3.528/3.3324 of joints planned alone: that of all is another question.
-        (
-            "puma560-mnam-pso-353",
-            ("3.528", "3.3324 to 3.4128", "3.4 to 5.9 %", "best known"),
-        ),
+        ("puma560-mnam-pso-353", ("3.528", "3.3324 to 3.4128", "3.4 to 5.9 %", "best known")),
         ("irb1600-ga-cubic-bspline", ("6.81", "4.0381", "at least 68.5 %, but breaks a limit")),
     ],
 )

@@ -42,15 +42,15 @@ def program(name):
 
 def test_the_results_are_fresh():
     made = program("rebuild")
-    lock = json.loads((SITE / "results" / "lock.json").read_text(encoding="utf-8"))
+    lock = json.loads((SITE / "results" / "lock.json").read_text("utf-8"))
     assert lock["results"] == RESULTS.hashes, "a result was edited; run docs/rebuild.py"
     assert lock["code"] == made.code_hash(), "the code has changed; run docs/rebuild.py"
 
 
 def test_tables_of_papers_are_made_from_the_results():
-    text, made = (ROOT / "README.md").read_text(encoding="utf-8"), program("rebuild")
+    text, made = (ROOT / "README.md").read_text("utf-8"), program("rebuild")
     assert text == made.readme(text)
-    assert made.GAPS.read_text(encoding="utf-8") == made.gaps_csv()
+    assert made.GAPS.read_text("utf-8") == made.gaps_csv()
     papers = [n for n in RESULTS.names if RESULTS.case(n)["source"]["kind"] == "paper"]
     assert len(papers) > 4
     assert sorted(re.findall(r"\]\(docs/reports/(.+)\.md\)", text)) == papers
@@ -60,7 +60,7 @@ def test_every_published_case_has_its_result_and_page():
     examples = [path.stem for path in (SITE / "examples").glob("*.toml")]
     assert set(RESULTS.names) == {file_name(case) for case in (*published_ids(), *examples)}
     for name in RESULTS.names:
-        page = (SITE / "reports" / f"{name}.md").read_text(encoding="utf-8")
+        page = (SITE / "reports" / f"{name}.md").read_text("utf-8")
         assert page.startswith(f"# {RESULTS.case(name)['title']}\n")
         assert name in (SITE / "reports" / "index.md").read_text(encoding="utf-8")
         # A report has a section for each verdict on a claim, and none that would be empty.
@@ -87,7 +87,7 @@ def prose(text):
     return re.sub(r"\]\([^)]*\)|https?://\S+", "", text)
 
 
-FIGURES = json.loads((SITE / "figures.json").read_text(encoding="utf-8"))
+FIGURES = json.loads((SITE / "figures.json").read_text("utf-8"))
 """For each document the figures in its prose, each with the key into the results that says so, or
 with the reason why it has none; `explained` knows the reasons."""
 
@@ -95,7 +95,7 @@ with the reason why it has none; `explained` knows the reasons."""
 @pytest.mark.parametrize("path", PROSE, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_no_figure_stands_in_prose_without_its_key(path):
     name = path.relative_to(ROOT).as_posix()
-    found = set(FIGURE.findall(prose(path.read_text(encoding="utf-8")))) - NO_RESULT.keys()
+    found = set(FIGURE.findall(prose(path.read_text("utf-8")))) - NO_RESULT.keys()
     assert found == set(FIGURES.get(name, {}))
 
 
@@ -115,11 +115,11 @@ def explained(document, figure, said):
         path = ROOT / place
         return place.startswith("tests/") and path.exists()
     if kind == "code":
-        return digits(figure) in (ROOT / place).read_text(encoding="utf-8")
+        return digits(figure) in (ROOT / place).read_text("utf-8")
     if kind == "printed":
-        folders = (ROOT / "problem" / "published", ROOT / "problem" / "robots")
+        folders = (ROOT / "problem/published", ROOT / "problem/robots")
         (path,) = [f / f"{place}.toml" for f in folders if (f / f"{place}.toml").exists()]
-        return f'"{digits(figure)}"' in path.read_text(encoding="utf-8")
+        return f'"{digits(figure)}"' in path.read_text("utf-8")
     if kind == "once":  # measured once, by a command that is still there
         script = re.search(r"(?:benchmarks|tests)[\w/.]*", place)
         return script is not None and (ROOT / script[0]).exists()
@@ -132,7 +132,7 @@ KEYED = [(d, f, s) for d, known in FIGURES.items() for f, s in known.items() if 
 
 def test_a_figure_without_a_key_has_a_reason_that_holds():
     for name, figure, said in EXPLAINED:
-        document = (ROOT / name).read_text(encoding="utf-8")
+        document = (ROOT / name).read_text("utf-8")
         assert explained(document, figure, said), (name, figure, said)
     assert len(EXPLAINED) > 50
     assert set(FIGURES) <= {path.relative_to(ROOT).as_posix() for path in PROSE}
@@ -151,7 +151,7 @@ def test_a_figure_in_prose_is_what_the_result_says(figure, key):
 def test_tables_of_measurements_are_those_of_their_files():
     made, named = program("tables"), []
     for path in PROSE:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text("utf-8")
         assert made.filled(text) == text, f"{path.name}: run `python docs/tables.py`"
         named += re.findall(r"<!-- csv: (\S+) -->", text)
     assert sorted(named) == sorted(path.stem for path in made.TABLES.glob("*.csv"))
@@ -236,13 +236,13 @@ def foreign(folder, text=FOREIGN, alter=None, builder="html"):
 
     (folder / "results").mkdir(parents=True)
     shutil.copy(SITE / "results" / "irb460-pso-353.json", folder / "results")
-    (shipped,) = (ROOT / "nlp" / "certificates").glob("irb460*limit-80*rad.json")
-    proof = shipped.read_text(encoding="utf-8")
-    (folder / "proof.json").write_text(alter(proof) if alter else proof, encoding="utf-8")
+    (shipped,) = (ROOT / "nlp/certificates").glob("irb460*limit-80*rad.json")
+    proof = shipped.read_text("utf-8")
+    (folder / "proof.json").write_text(alter(proof) if alter else proof, "utf-8")
     (folder / "conf.py").write_text(
-        'extensions = ["myst_parser", "trajgap.compare.sphinx"]\n', encoding="utf-8"
+        'extensions = ["myst_parser", "trajgap.compare.sphinx"]\n', "utf-8"
     )
-    (folder / "index.md").write_text(text, encoding="utf-8")
+    (folder / "index.md").write_text(text, "utf-8")
     said = io.StringIO()
     with warnings.catch_warnings(), patch_docutils(str(folder)), docutils_namespace():
         warnings.simplefilter("ignore")  # of Sphinx itself
@@ -250,7 +250,7 @@ def foreign(folder, text=FOREIGN, alter=None, builder="html"):
         app = Sphinx(folder, folder, out, kept, builder, status=None, warning=said)
         app.build()
     name = {"html": "index.html", "latex": "projectnamenotset.tex"}[builder]
-    return said.getvalue(), (out / name).read_text(encoding="utf-8")
+    return said.getvalue(), (out / name).read_text("utf-8")
 
 
 def test_a_foreign_project_shows_an_audit(tmp_path):
@@ -308,7 +308,7 @@ def test_every_certified_value_of_a_report_has_a_certificate_that_the_build_prov
         case = RESULTS.case(name)
         steps = [step for entry in case["waterfalls"] for step in entry["steps"]]
         listed = {one["file"] for one in case["provenance"]["certificates"]}
-        page = (SITE / "reports" / f"{name}.md").read_text(encoding="utf-8")
+        page = (SITE / "reports" / f"{name}.md").read_text("utf-8")
         shown = set(re.findall(r"\{trajgap-certificate\} (\S+)", page))
         assert f"{{trajgap-source}} {name}\n" in page
         assert listed or shown or not any(step["evidence"] == "certified" for step in steps), name
@@ -317,7 +317,7 @@ def test_every_certified_value_of_a_report_has_a_certificate_that_the_build_prov
 @pytest.mark.parametrize(
     ("alter", "said"),
     [
-        (lambda path: path.write_text("{}", encoding="utf-8"), "is not the certificate with SHA"),
+        (lambda path: path.write_text("{}", "utf-8"), "is not the certificate with SHA"),
         (lambda path: path.unlink(), "No such file"),
     ],
 )
@@ -325,7 +325,7 @@ def test_a_report_whose_certificate_is_another_does_not_build(tmp_path, alter, s
     case = RESULTS.case("irb460-pso-353")
     one = case["provenance"]["certificates"][0]
     path = tmp_path / one["file"]
-    shutil.copy(ROOT / "nlp" / "certificates" / one["file"], path)
+    shutil.copy(ROOT / "nlp/certificates" / one["file"], path)
     assert proved_again(path, one["sha256"]).proves
     alter(path)
     with pytest.raises(TrajgapError, match=said):
@@ -369,6 +369,6 @@ def test_a_gallery_shows_each_picture_once(tmp_path):
     assert "one.svg" in page
     assert "In double precision" in page
     assert '<title id="one-title">T</title>' in page  # inside the page, so it has its colours
-    assert (tmp_path / "one.svg").read_text(encoding="utf-8").startswith("<?xml")
+    assert (tmp_path / "one.svg").read_text("utf-8").startswith("<?xml")
     assert scrape_pictures((), block, {"src_dir": str(tmp_path)}) == ""
     assert not (tmp_path / "two.svg").exists()

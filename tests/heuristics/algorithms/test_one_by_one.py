@@ -111,9 +111,9 @@ def swarm(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, Any]:
         x = first_positions(record, rng)
         v = (low + (high - low) * rng.random((record.particles, 3))).tolist()
         fits = [judge(one) for one in x]
-        start = {"positions": x, "velocities": v, "fitness": fits}
+        first = {"positions": x, "velocities": v, "fitness": fits}
         return led(
-            record, rng, judge, {**start, "personal": x, "personal_fitness": fits}, x[0], INF
+            record, rng, judge, {**first, "personal": x, "personal_fitness": fits}, x[0], INF
         )
     count = record.particles
     rows, columns = {"coordinate": (count, 3), "particle": (count, 1), "iteration": (1, 1)}[
@@ -273,9 +273,9 @@ def generation(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, An
         return {"positions": x, "fitness": fits, "best": best, "best_fitness": f}
     known = [f for f in before.fitness if f < record.penalty]
     worst = max(known, default=0.0)
-    inverse = record.fitness_rule == "inverse"
+    turned = record.fitness_rule == "inverse"
     fitness = [
-        0.0 if f >= record.penalty else 1 / f if inverse else worst - f for f in before.fitness
+        0.0 if f >= record.penalty else 1 / f if turned else worst - f for f in before.fitness
     ]
     crossing, mutating = rates(record, fitness)
     pool = [list(before.positions[k]) for k in mating(record, before, fitness, rng)]

@@ -190,9 +190,7 @@ def test_what_ends_in_time_is_left_alone() -> None:
 
 
 @pytest.mark.parametrize("name", ["mealpy:OriginalWOA", "pymoo:DE", "pygmo:sade", "cma"])
-def test_a_missing_package_is_named_with_its_install_line(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_package_has_its_install_line(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     package = name.partition(":")[0]
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(TrajgapError, match=f"install it with `python -m pip install {package}`"):

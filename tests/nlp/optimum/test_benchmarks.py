@@ -71,11 +71,8 @@ def test_blocks_add_up_and_are_replaced(rates: ModuleType) -> None:
     first = rates.rows_of("a", "hard", 0, Counter(optimal=98, failed=2), lost)
     second = rates.rows_of("b", "hard", 100, Counter(optimal=50), [(120, "improvable", "optimal")])
     rows = rates.merged(second, first)
-    assert [(row.code, row.status) for row in rows] == [
-        ("a", "optimal"),
-        ("a", "failed"),
-        ("b", "optimal"),
-    ]
+    wanted = [("a", "optimal"), ("a", "failed"), ("b", "optimal")]
+    assert [(row.code, row.status) for row in rows] == wanted
     shown = rates.tables(rows)["solver errors"]
     assert "| `a` | 100 | 0 to 99 |" in shown
     assert "| `b` | 50 | 100 to 149 |" in shown
@@ -98,9 +95,7 @@ def test_blocks_add_up_and_are_replaced(rates: ModuleType) -> None:
 
 
 @pytest.mark.parametrize(("errors", "tried"), [(0, 7), (0, 10000), (2, 3625), (9, 10), (7, 7)])
-def test_limits_are_those_of_clopper_and_pearson(
-    rates: ModuleType, errors: int, tried: int
-) -> None:
+def test_limits_are_clopper_and_pearsons(rates: ModuleType, errors: int, tried: int) -> None:
     exact = binomtest(errors, tried, alternative="less").proportion_ci(0.95, method="exact")
     assert rates.upper_limit(errors, tried) == pytest.approx(exact.high, rel=1e-9)
 
@@ -168,9 +163,8 @@ def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
     for k, (problem, same) in enumerate(zip(INSTANCES, again, strict=True)):
         np.testing.assert_array_equal(problem.waypoints, same.waypoints)
         assert problem.curve == quintic_spline(7)
-        np.testing.assert_allclose(
-            problem.limits.derivatives[:, :2], limits.derivatives[:, :2], rtol=1e-15
-        )
+        own, given = (one.derivatives[:, :2] for one in (problem.limits, limits))
+        np.testing.assert_allclose(own, given, rtol=1e-15)
         assert not np.isfinite(problem.limits.jerk).any()
         steps = np.abs(np.diff(problem.waypoints, axis=0))
         assert steps.shape == (7, 6)
@@ -179,7 +173,7 @@ def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
 
 def page() -> dict[str, list[str]]:
     """Rows of the page's table by the name of the problem."""
-    text = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
+    text = (ROOT / "docs/reference/interpolants.md").read_text()
     lines = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| step")]
     return {cells[0].strip(): [cell.strip() for cell in cells[1:]] for cells in lines}
 
@@ -204,9 +198,7 @@ SLOW = [pytest.param(number, 20, 15, 9, marks=pytest.mark.slow) for number in (3
 
 
 @pytest.mark.parametrize(("number", "count", "hits", "seed"), [(15, 4, 4, 8), *SLOW])
-def test_single_starts_and_the_default_reach_the_same_total(
-    number: int, count: int, hits: int, seed: int
-) -> None:
+def test_single_starts_reach_the_same_total(number: int, count: int, hits: int, seed: int) -> None:
     problem = INSTANCES[number]
     usual = solve(problem)
     assert usual.status is Status.CONVERGED

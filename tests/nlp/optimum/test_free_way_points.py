@@ -60,13 +60,13 @@ def by_scipy(problem: Problem, ranges: bool) -> float:
 
 @pytest.mark.parametrize("virtual", [(2,), (2, 3)])
 def test_the_optimum_agrees_with_slsqp(virtual: tuple[int, ...]) -> None:
-    problem = Problem(
+    asked = Problem(
         Q, LIMITS, quintic_spline(3 + len(virtual), virtual=virtual), duration_lower=0.2
     )
-    solution = solve(problem)
+    solution = solve(asked)
     assert solution.status is Status.CONVERGED
     assert solution.nodal.shape == (len(virtual), 2)
-    theirs = by_scipy(problem, ranges=False)
+    theirs = by_scipy(asked, ranges=False)
     # Held at samples alone, limits allow a little more.
     assert theirs * (1 - 1e-6) <= solution.total_time <= theirs * (1 + 1e-3)
     # A way-point that may lie anywhere costs nothing: it may lie where the spline goes anyway.

@@ -72,19 +72,13 @@ def test_a_known_motion_is_never_undercut_by_the_answer() -> None:
     assert again.durations == pytest.approx(best.durations, rel=1e-6)
 
 
-def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_known_motion_is_kept_if_the_solver_finds_none(monkeypatch: pytest.MonkeyPatch) -> None:
     from trajgap.nlp.optimum import solver
 
     problem = TURNING
     known = 1.3 * solve(problem).durations
-
-    def lost(one: Problem, *_: object) -> Solution:
-        return Solution(one, Status.NONE_FOUND, "lost")
-
-    monkeypatch.setattr(solver, "_widely", lambda one, *_: lost(one))
-    monkeypatch.setattr(solver, "_stretched_start", lambda one, *_: lost(one))
+    for name in ("_widely", "_stretched_start"):
+        monkeypatch.setattr(solver, name, lambda one, *_: Solution(one, Status.NONE_FOUND, "lost"))
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)
     assert found.total_time <= known.sum()

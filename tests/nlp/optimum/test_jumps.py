@@ -209,9 +209,7 @@ def test_a_still_segment_beside_a_moving_one_jumps() -> None:
 @pytest.mark.parametrize(
     ("curve", "power"), [(piecewise((1, 1, 1), 0, ()), 1.0), (rest_to_rest(3, 3), 0.5)]
 )
-def test_the_least_durations_without_a_jump_are_proportional_to_the_way(
-    curve: Interpolant, power: float, seed: int
-) -> None:
+def test_the_least_durations_without_a_jump(curve: Interpolant, power: float, seed: int) -> None:
     """h ∝ |Δq| keeps the velocity of straight segments, h ∝ √|Δq| the acceleration of cubics."""
     generator = np.random.default_rng(seed)
     way = generator.uniform(0.2, 2.0, 3)
@@ -322,9 +320,7 @@ def test_proportional_joints_share_the_ratios() -> None:
     ],
     ids=["smooth", "acceleration", "no jerk limit", "velocity", "still", "B-spline", "rest"],
 )
-def test_jumps_that_the_declaration_allows_and_the_limits_forbid(
-    problem: Problem, places: list[tuple[int, int, int]]
-) -> None:
+def test_jumps_that_limits_forbid(problem: Problem, places: list[tuple[int, int, int]]) -> None:
     assert forbidden_jumps(problem) == places
 
 

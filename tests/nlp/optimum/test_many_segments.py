@@ -86,9 +86,7 @@ PLATEAUS = [
 
 
 @pytest.mark.parametrize(("curve", "seed"), PLATEAUS)
-def test_a_plateau_at_the_velocity_limit_keeps_no_search_from_its_end(
-    curve: Interpolant, seed: int
-) -> None:
+def test_a_plateau_at_the_velocity_limit_ends_no_search(curve: Interpolant, seed: int) -> None:
     problem = one_joint(curve, seed)
     answer = program_search(problem, way_start(problem), np.full(curve.segments, 1e-5))
     assert answer.report.residual <= 1e-8
@@ -140,19 +138,13 @@ def test_out_of_time_the_best_motion_so_far_is_the_answer() -> None:
     assert answer.why == f"{ended}; {CUT_SHORT}"
 
 
-def test_a_round_that_fails_begins_again_from_the_best_motion(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_failed_round_begins_again_from_the_best_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, total = long_problem(CURVES["cubic"]), solved("cubic").total_time
     round_ = rounds.solve_round
     calls: list[tuple[float, float]] = []
 
     def failing(
-        program: Program,
-        rows: Rows,
-        state: object,
-        stage: tuple[float, float],
-        within: object,
+        program: Program, rows: Rows, state: object, stage: tuple[float, float], within: object
     ) -> tuple[bool, int, float]:
         success, count, seconds = round_(program, rows, state, stage, within)  # type: ignore[arg-type]
         calls.append(stage)

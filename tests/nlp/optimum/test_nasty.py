@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -23,7 +24,6 @@ from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.proofs import exact_problem
 from trajgap.problem import (
-    Array,
     Interpolant,
     Limits,
     Problem,
@@ -99,17 +99,11 @@ def near_coincident() -> Problem:
     return Problem(q, limits, quintic_spline(4, ((1, 0.0), (2, 0.0), (3, 0.0)), virtual=(1, 3)))
 
 
-def test_rounding_that_hides_a_spline_is_undecided_and_raises_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_rounding_that_hides_a_spline_leaves_it_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = near_coincident()
     hidden = [3.26329483e-07, 6.48742924, 3.10591737e-08, 3.67050879e-02]
     assert check(problem, hidden).verdict is Verdict.UNDECIDED
-
-    def singular(*_: object) -> None:
-        raise SingularError("singular", 0)
-
-    monkeypatch.setattr(limit_rows, "fit", singular)
+    monkeypatch.setattr(limit_rows, "fit", Mock(side_effect=SingularError("singular", 0)))
     assert exact_rows(problem, np.array(hidden)).worst == np.inf
     assert kkt(problem, np.array(hidden)).residual == np.inf
 
@@ -171,9 +165,7 @@ NEAR_QUINTIC, NEAR_REST = NEAR["quintic"][0], NEAR["rest"][0]
 @pytest.mark.parametrize(
     ("name", "speed", "bend"), [("rest", 1.875, 10.0 / np.sqrt(3.0)), ("slow", 1.5, 6.0)]
 )
-def test_blurred_rest_to_rest_answers_are_those_in_closed_form(
-    name: str, speed: float, bend: float
-) -> None:
+def test_blurred_rest_to_rest_has_closed_forms(name: str, speed: float, bend: float) -> None:
     problem, _ = NEAR[name]
     way = np.abs(np.diff(problem.waypoints, axis=0))[:, 0]
     v, a, j = problem.limits.derivatives[0]
@@ -203,14 +195,9 @@ def test_a_motion_at_its_duration_bound_is_decided_by_a_descent() -> None:
 
 
 @pytest.mark.parametrize("curve", [rest_to_rest(2, 5), piecewise((5, 5), 2)])
-def test_where_a_stretch_gives_a_feasible_motion_it_is_the_answer(
-    monkeypatch: pytest.MonkeyPatch, curve: Interpolant
-) -> None:
-    def lost(one: Problem, *_: object) -> Solution:
-        return Solution(one, Status.FAILED, "lost")
-
-    monkeypatch.setattr(solver, "_widely", lambda one, *_: lost(one))
-    monkeypatch.setattr(solver, "_programmed", lambda one, *_: lost(one))
+def test_a_stretched_motion_is_found(monkeypatch: pytest.MonkeyPatch, curve: Interpolant) -> None:
+    for search in ("_widely", "_programmed"):
+        monkeypatch.setattr(solver, search, lambda one, *_: Solution(one, Status.FAILED, "lost"))
     problem = Problem(np.array([[0.3], [1.1], [0.2]]), Limits(1.0, 2.0, joints=1), curve)
     solution = solve(problem)
     assert solution.status is not Status.FAILED
@@ -322,9 +309,7 @@ def test_the_same_reversed_in_time() -> None:
         ([[0, 0], [0.01, 0.01], [1, 2], [1.01, 2.02], [3, 4]], cubic_spline_virtual(5), [3]),
     ],
 )
-def test_ways_that_are_short(
-    rows: list[list[float]], curve: Interpolant, segments: list[int]
-) -> None:
+def test_short_ways(rows: list[list[float]], curve: Interpolant, segments: list[int]) -> None:
     problem = Problem(np.array(rows, dtype=float), Limits(1.0, joints=2), curve)
     assert short_ways(problem) == segments
 
@@ -345,9 +330,7 @@ def test_starts_are_shorter_by_powers_of_ten_in_a_short_way_alone() -> None:
 
 
 def test_segments_that_stand_alone_are_not_searched_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    def never(*_: object) -> Array:
-        raise AssertionError("searched")
-
-    monkeypatch.setattr("trajgap.nlp.optimum.solver.shortened", never)
+    searched = Mock(side_effect=AssertionError("searched"))
+    monkeypatch.setattr("trajgap.nlp.optimum.solver.shortened", searched)
     rows = np.array([[0.0], [1.0], [1.0001], [2.0]])
     assert solve(Problem(rows, Limits(1.0, 1.0, joints=1), rest_to_rest(3, 5))).total_time > 0

@@ -79,9 +79,7 @@ def test_a_limit_is_gone_after_an_interrupt() -> None:
 @pytest.mark.parametrize(
     ("left", "cap"), [(1000.0, 128.0), (60.0, 16.0), (15.9, 2.0), (0.3, 0.25), (-3.0, 0.25)]
 )
-def test_a_call_has_no_more_than_is_left(
-    monkeypatch: pytest.MonkeyPatch, left: float, cap: float
-) -> None:
+def test_a_call_has_what_is_left(monkeypatch: pytest.MonkeyPatch, left: float, cap: float) -> None:
     ticking(monkeypatch, 0.0)
     with stopping_after(left):
         assert call_cap() == cap
@@ -95,9 +93,7 @@ def test_an_estimate_stops_after_a_start(monkeypatch: pytest.MonkeyPatch) -> Non
     assert found.starts == 1
 
 
-def test_the_answer_of_a_certification_has_a_share_of_the_time(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_answer_of_a_certification_has_a_time_share(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = Ticking()
     monkeypatch.setattr(clock, "time", ticks)
     one = Session(exact_problem(NEAR), Request(clock=clock.RunClock(100.0)))
@@ -136,9 +132,7 @@ def test_the_windows_of_a_proof_look_at_the_clock() -> None:
 
 
 @pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
-def test_a_solve_ends_soon_after_its_time_and_says_so(
-    monkeypatch: pytest.MonkeyPatch, problem: Problem
-) -> None:
+def test_a_solve_ends_soon_after_time(monkeypatch: pytest.MonkeyPatch, problem: Problem) -> None:
     ticks = ticking(monkeypatch)
     whole = solve(problem, seconds=1e9)
     needed = ticks.looks

@@ -110,9 +110,7 @@ def proof(found: Certified) -> Any:
 
 
 @pytest.mark.usefixtures("at_once")
-def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
     alone = proof(certify(ROUGH, certifier=CUBIC, gap=0.01))
     assert sum(node[0] == "/" for node in alone[0]["tree"]) > 4, "too few boxes for several"
     assert proof(certify(ROUGH, certifier=CUBIC, gap=0.01, workers=2)) == alone

@@ -45,7 +45,7 @@ certificate_module = import_module("trajgap.nlp.proofs.document")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = Pair("limit-80", "waypoints-rad")
 EXACT = COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"]
-VERDICTS = (ROOT / "docs" / "explanation" / "verdicts.md").read_text("utf-8")
+VERDICTS = (ROOT / "docs/explanation/verdicts.md").read_text("utf-8")
 
 
 @pytest.fixture
@@ -113,9 +113,7 @@ def test_nothing_is_called_certified_without_a_certificate() -> None:
     assert document["results"][0]["evidence"] == "best known"
 
 
-def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_certificate_that_proves_no_claim_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = copy.deepcopy(shipped(EXACT))
     wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * 2)
     monkeypatch.setattr(certificate_module, "all_shipped", lambda: (wrong,))
@@ -171,9 +169,8 @@ def test_a_closed_form_needs_no_file() -> None:
     assert answer.evidence is Evidence.CERTIFIED
     assert answer.lower_bound == pytest.approx(answer.total_time, rel=1e-8)
     spline = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), cubic_spline(2))
-    assert (
-        with_interval(solve(spline), proved(exact_problem(spline))).evidence is Evidence.BEST_KNOWN
-    )
+    bounds = proved(exact_problem(spline))
+    assert with_interval(solve(spline), bounds).evidence is Evidence.BEST_KNOWN
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,13 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 from trajgap.nlp import per_joint, solve, solve_per_joint
 from trajgap.nlp.proofs import KeptNearby, kept_nearby
-from trajgap.problem import Array, Limits, Problem, three_five_three
+from trajgap.problem import Limits, Problem, three_five_three
 from trajgap.verify import seal
 
 WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
@@ -30,16 +31,10 @@ def questions() -> list[per_joint.Near]:
 
 
 @pytest.fixture
-def made(monkeypatch: pytest.MonkeyPatch) -> list[per_joint.Near]:
-    """The questions that were searched since the test began."""
-    begun: list[per_joint.Near] = []
-
-    def counting(question: per_joint.Near) -> list[Array]:
-        begun.append(question)
-        return per_joint.nearby(question)
-
-    monkeypatch.setattr(kept_nearby, "nearby", counting)
-    return begun
+def made(monkeypatch: pytest.MonkeyPatch) -> Mock:
+    """Calls are of the questions that were searched since the test began."""
+    monkeypatch.setattr(kept_nearby, "nearby", Mock(wraps=per_joint.nearby))
+    return kept_nearby.nearby
 
 
 def alike(one: Any, other: Any) -> bool:
@@ -52,16 +47,16 @@ def alike(one: Any, other: Any) -> bool:
 def test_kept_durations_are_what_the_search_finds(tmp_path: Path, questions, made) -> None:
     plain = KeptNearby(False)(questions)
     cold = KeptNearby(tmp_path)(questions)
-    before = len(made)
+    before = made.call_count
     warm = KeptNearby(tmp_path)(questions)
     assert before == 2 * len(questions)
-    assert len(made) == before + 1  # one of them made again
+    assert made.call_count == before + 1  # one of them made again
     assert alike(plain, cold)
     assert alike(cold, warm)
     # Another cap is another question.
     other = [questions[0], questions[1]._replace(caps=[questions[1].caps[0] + 1e-6])]
     KeptNearby(tmp_path)(other)
-    assert len(made) == before + 1 + len(other)
+    assert made.call_count == before + 1 + len(other)
 
 
 def longer(left: list[Any], share: float) -> None:
@@ -94,9 +89,9 @@ def test_a_spoiled_file_is_searched_over_and_replaced(
     assert stored["seal"] == seal([asked, json.loads(own)["answers"]])
     stored["seal"] = seal([asked, stored["answers"]])
     file.write_text(json.dumps(stored))
-    made.clear()
+    made.reset_mock()
     again = KeptNearby(tmp_path)(questions)
-    assert len(made) >= len(questions)
+    assert made.call_count >= len(questions)
     assert alike(cold, again)
     assert file.read_bytes() == own
 

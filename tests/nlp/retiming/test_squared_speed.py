@@ -15,8 +15,6 @@ LINE = [[[0.2, -1.0, 3.0], [0.9, 2.5, -0.7]]]
 POINTS = np.array([[0.3, 1.0], [1.1, 0.4], [0.9, -0.8], [-0.4, -0.5], [-0.2, 0.9], [0.5, 1.6]])
 SHARES = np.array([0.9, 1.2, 1.0, 1.4, 1.1])
 LIMITS = Limits([0.8, 1.3], [2.5, 4.0])
-
-
 FEW = 500
 """Cells: a quarter of those by default, and a quarter of the time."""
 
@@ -78,24 +76,20 @@ def test_toppra_lies_between_the_bounds(seed: int) -> None:
     assert found.lower - toppra.error <= toppra.extrapolated <= found.upper + toppra.error
 
 
-def test_times_scale_with_the_limits_and_not_with_the_parameter() -> None:
+def test_times_scale_with_the_limits_and_with_nothing_else() -> None:
     first, c = along(BENT, LIMITS), 1.7
     faster = Limits(c * LIMITS.velocity, c**2 * LIMITS.acceleration)
+    still = natural(np.c_[POINTS, np.full(6, 0.7)], SHARES)
     for other, factor in (
         (along(BENT, faster), c),
         (along(replace(BENT, durations=3.0 * BENT.durations), LIMITS), 1.0),
         (along(natural(POINTS[:, ::-1], SHARES), Limits([1.3, 0.8], [4.0, 2.5])), 1.0),
         (along(natural(POINTS[::-1], SHARES[::-1]), LIMITS), 1.0),
         (along(natural(5.0 - POINTS, SHARES), LIMITS), 1.0),
+        (along(still, Limits([0.8, 1.3, 0.0], [2.5, 4.0, 0.0])), 1.0),
     ):
         assert factor * other.lower == pytest.approx(first.lower, rel=1e-6)
         assert factor * other.upper == pytest.approx(first.upper, rel=1e-6)
-
-
-def test_a_joint_that_stands_still_changes_nothing() -> None:
-    still = natural(np.c_[POINTS, np.full(6, 0.7)], SHARES)
-    found = along(still, Limits([0.8, 1.3, 0.0], [2.5, 4.0, 0.0]))
-    assert found.lower == pytest.approx(along(BENT, LIMITS).lower, rel=1e-9)
 
 
 def test_looser_limits_allow_less_time_and_tighter_ones_need_more() -> None:
@@ -128,22 +122,17 @@ def test_peaks_are_no_less_than_those_of_any_path_within_the_radius() -> None:
     spline = cubic_spline(3, ((2, 0.0),))
     single = largest_derivatives(fit(spline, np.eye(4), SHARES[:3]))
     exact = (np.zeros((3, 2)), np.zeros((3, 2)))
-    wide = cut_path(
-        natural(points, SHARES[:3]), 60, tuple(one @ np.full((4, 2), away) for one in single)
-    )
+    radius = tuple(one @ np.full((4, 2), away) for one in single)
+    wide = cut_path(natural(points, SHARES[:3]), 60, radius)
     b = np.random.default_rng(2).uniform(0.1, 1.0, wide.widths.size + 1)
-    most = np.zeros(2)
+    most, slow = np.zeros(2), np.full_like(b, 0.3)  # at constant speed, q″ alone pushes
     for signs in product((-away, away), repeat=4):
-        other = natural(points + np.c_[signs, signs[::-1]], SHARES[:3])
-        most = np.maximum(most, _worst(cut_path(other, 60, exact), LIMITS, b))
+        other = cut_path(natural(points + np.c_[signs, signs[::-1]], SHARES[:3]), 60, exact)
+        most = np.maximum(most, _worst(other, LIMITS, b))
+        assert _worst(other, LIMITS, slow)[1] <= _worst(wide, LIMITS, slow)[1]
     own = _worst(cut_path(natural(points, SHARES[:3]), 60, exact), LIMITS, b)
     assert (own < most).all()
     assert (most <= _worst(wide, LIMITS, b)).all()
-    slow = np.full_like(b, 0.3)  # at constant speed, q″ alone pushes
-    for signs in product((-away, away), repeat=4):
-        other = natural(points + np.c_[signs, signs[::-1]], SHARES[:3])
-        found = _worst(cut_path(other, 60, exact), LIMITS, slow)
-        assert found[1] <= _worst(wide, LIMITS, slow)[1]
 
 
 def test_largest_derivatives_are_no_smaller_than_any_value() -> None:
@@ -159,11 +148,8 @@ def test_a_motion_within_the_limits_is_never_shorter_than_the_lower_bound() -> N
     # A quintic from rest to rest along the path, stretched until it keeps the limits.
     u = np.linspace(0.0, 1.0, 4001)
     total = BENT.total_time
-    s, v, a = (
-        10 * u**3 - 15 * u**4 + 6 * u**5,
-        30 * u**2 * (1 - u) ** 2,
-        60 * u - 180 * u**2 + 120 * u**3,
-    )
+    s = 10 * u**3 - 15 * u**4 + 6 * u**5
+    v, a = 30 * u**2 * (1 - u) ** 2, 60 * u - 180 * u**2 + 120 * u**3
     first, second = BENT(total * s, 1), BENT(total * s, 2)
     speed = total * first * v[:, None]
     push = (total * first * a[:, None]) + second * (total * v[:, None]) ** 2

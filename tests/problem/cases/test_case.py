@@ -83,13 +83,9 @@ def test_claims():
 
 def test_the_example_of_fang2020_is_what_the_paper_prints():
     """Tables 2, 3, 4 and 7 typed a second time: a septic needs no code."""
-    case = load_case(ROOT / "docs" / "examples" / "fang2020-task1.toml")
+    case = load_case(ROOT / "docs/examples/fang2020-task1.toml")
     problem = case.problem()
-    limits = [
-        [100, 95, 100, 150, 130, 110],
-        [60, 60, 75, 70, 90, 80],
-        [60, 66, 85, 70, 75, 70],
-    ]
+    limits = [[100, 95, 100, 150, 130, 110], [60, 60, 75, 70, 90, 80], [60, 66, 85, 70, 75, 70]]
     points = [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]]
     np.testing.assert_allclose(problem.waypoints, np.deg2rad(points), rtol=1e-15)
     np.testing.assert_allclose(problem.limits.derivatives.T, np.deg2rad(limits), rtol=1e-15)
@@ -111,9 +107,7 @@ def as_json(text: str):
 
 
 def test_the_exported_schema_is_current():
-    exported = json.loads(
-        (ROOT / "docs" / "reference" / "case.schema.json").read_text(encoding="utf-8")
-    )
+    exported = json.loads((ROOT / "docs/reference/case.schema.json").read_text("utf-8"))
     assert exported == json.loads(json.dumps(schema()))
 
 
@@ -123,8 +117,8 @@ def test_the_schema_accepts_what_loads_and_refuses_what_is_misspelt():
     # JSON has no infinity; TOML's inf is written as a string for this check.
     validator.validate(as_json(BASE.replace("4, inf]", "4, 'inf']")))
     for case_id in published_ids():
-        path = ROOT / "problem" / "published" / f"{case_id}.toml"
-        validator.validate(as_json(path.read_text(encoding="utf-8")))
+        path = ROOT / "problem/published" / f"{case_id}.toml"
+        validator.validate(as_json(path.read_text("utf-8")))
     for old, new in (
         ("[limits]\nvelocity", "[limits]\nvelocty"),
         ('quantity = "peak"', 'quantity = "peek"'),
@@ -145,7 +139,7 @@ def test_documents_dump_to_the_digits_that_they_were_read_from():
 
 
 def test_every_key_is_in_the_documentation():
-    page = (ROOT / "docs" / "reference" / "case-files.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/reference/case-files.md").read_text("utf-8")
     blocks = [schema(), *schema()["$defs"].values()]
     keys = {key for block in blocks for key in block.get("properties", {})}
     words = {word for block in blocks for p in block.get("properties", {}).values()
@@ -156,7 +150,7 @@ def test_every_key_is_in_the_documentation():
 
 def test_published_cases_load_by_path_too(tmp_path):
     for case_id in published_ids():
-        path = ROOT / "problem" / "published" / f"{case_id}.toml"
+        path = ROOT / "problem/published" / f"{case_id}.toml"
         assert load_case(path).document == load_case(case_id).document
         assert load_case(str(path)).file == str(path)
 

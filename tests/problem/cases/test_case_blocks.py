@@ -41,8 +41,7 @@ def test_a_problem_of_some_joints_keeps_listing_all():
     header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
     claim = 'derivative = "velocity"\njoint = "d3"\nvalue = "0.2332"'
     case = scara(
-        ('[[readings]]\nid = "rpm"\n', header),
-        (claim, 'derivative = "velocity"\nvalue = "233.2"'),
+        ('[[readings]]\nid = "rpm"\n', header), (claim, 'derivative = "velocity"\nvalue = "233.2"')
     )
     problem = case.problem()
     assert (problem.joints, problem.linear) == (("d3",), (True,))

@@ -21,11 +21,7 @@ RAD = "angles in radians, durations only positive"
         # What a reading changes and the others do not; its own label stands instead of that.
         (None, None, (PLAIN, RAD)),
         ("as the header says", None, ("as the header says", RAD)),
-        (
-            "alike",
-            "alike",
-            r"readings\[1\]\.label: 'alike' names another reading; ",
-        ),
+        ("alike", "alike", r"readings\[1\]\.label: 'alike' names another reading; "),
         *((label, None, "label") for label in ("", " padded", "x" * 81, r"two\nlines")),
     ],
 )
@@ -80,10 +76,7 @@ STRETCHED = 'parameters = "given"\ntime = "stretched"\nparameter_values = [0, 3,
             f'[readings.interpolant]\n{KNOTS}parameters = "times"\n{WHOLE}',
             "way-points at the times",
         ),
-        (
-            f"[readings.interpolant]\n{KNOTS}{STRETCHED}{WHOLE}",
-            "way-points at printed parameters",
-        ),
+        (f"[readings.interpolant]\n{KNOTS}{STRETCHED}{WHOLE}", "way-points at printed parameters"),
     ],
 )
 def test_whatever_a_reading_changes_has_words(changes: str, wanted: str) -> None:

@@ -32,7 +32,7 @@ BASES = {
     "values": paper(
         [[45, 90, 5]] * 2, GIVEN, claim("one", "value", values=["1", "2"], **AT), **SPLINE
     ),
-    "family": (ROOT / "tests" / "support" / "family.toml").read_text("utf-8"),
+    "family": (ROOT / "tests/support/family.toml").read_text("utf-8"),
 }
 """Text that each section of the file stands for."""
 

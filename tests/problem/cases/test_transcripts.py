@@ -28,9 +28,7 @@ def differences(old: str, new: str, words: bool = False) -> list[Difference]:
         ('units = { position = "rad" }', "", "readings.rad.units.position", None, "(absent)"),
     ],
 )
-def test_what_differs_is_named(
-    old: str, new: str, field: str, first: str | None, second: str
-) -> None:
+def test_each_difference(old: str, new: str, field: str, first: str | None, second: str) -> None:
     (found,) = differences(old, new)
     assert found.field == field
     assert found.second == second
@@ -54,8 +52,8 @@ def test_entries_are_matched_by_their_ids() -> None:
     assert found[0].second == found[1].first == "(absent)"
 
 
-FIRST = ROOT / "docs" / "examples"
-SECOND = sorted((ROOT / "tests" / "support" / "second_transcriptions").glob("*.toml"))
+FIRST = ROOT / "docs/examples"
+SECOND = sorted((ROOT / "tests/support/second_transcriptions").glob("*.toml"))
 
 # Examples from before, whose numbers stand a second time in tests of their own.
 IN_TESTS = {"fang2020-task1", "fang2020-task2"}
@@ -74,7 +72,7 @@ def test_a_digit_typed_wrongly_is_seen(tmp_path: Path) -> None:
     name = "robotics1-2017-07-11.toml"
     text = (FIRST / name).read_text("utf-8")
     assert text.count('value = "3.36"') == 1
-    (tmp_path / name).write_text(text.replace('"3.36"', '"3.63"'), encoding="utf-8")
+    (tmp_path / name).write_text(text.replace('"3.36"', '"3.63"'), "utf-8")
     found = compare_transcriptions(load_case(FIRST / name), load_case(tmp_path / name))
     assert [(one.field, one.first, one.second) for one in found] == [
         ("claims.largest-acceleration-7.value", '"3.36"', '"3.63"')

@@ -92,10 +92,10 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
     """Of unrelated polynomials, by scipy's values at the two ends of every break."""
     rng = np.random.default_rng(pieces)
     problem, _ = sample_problem(rest_to_rest(pieces, 3), pieces)
-    motion = Trajectory(
+    curve = Trajectory(
         rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3)), (3,) * pieces
     )
-    held, at = motion.polynomial, motion.breaks[1:-1]
+    held, at = curve.polynomial, curve.breaks[1:-1]
     steps = np.array([held(at, r) - held(np.nextafter(at, 0.0), r) for r in range(3)])
     for _ in range(9):
         error = rng.uniform(0.0, 6.0, (pieces, 4, 3)) * rng.uniform(0.0, 1.0, (pieces, 1, 1))
@@ -104,7 +104,7 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
             (b + 1, problem.joints[j], r, pytest.approx(at[b]), pytest.approx(steps[r, b, j]))
             for b, j, r in np.argwhere((np.abs(steps) > both).transpose(1, 2, 0)).tolist()
         ]
-        found, _ = jumps_of(problem, motion, error)
+        found, _ = jumps_of(problem, curve, error)
         assert [(j.break_index, j.joint, j.order, j.time, j.size) for j in found] == expected
         assert len(expected) > 0 or pieces < 3
 
@@ -245,9 +245,8 @@ def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     assert limited or (result.worst, result.peaks) == (None, ())
     assert result.feasible_time == pytest.approx(h.sum())
     assert result.tight_time is None
-    assert (
-        result.tight_why == "nothing moves or nothing is limited, so the total time can shrink to 0"
-    )
+    why = "nothing moves or nothing is limited, so the total time can shrink to 0"
+    assert result.tight_why == why
     assert not evaluate(problem, [h]).ratios.any()
 
 
@@ -329,9 +328,7 @@ def test_summary_reads_on_one_screen() -> None:
 
 @pytest.mark.parametrize("uneven", [False, True])
 @pytest.mark.parametrize("curve", [three_five_three(), quintic_spline(3), cubic_spline(3)])
-def test_a_reachable_total_holds_for_every_waypoint_of_the_box(
-    curve: Interpolant, uneven: bool
-) -> None:
+def test_a_reachable_total_holds_for_all_of_the_box(curve: Interpolant, uneven: bool) -> None:
     rng = np.random.default_rng(11)
     q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
     limits = UNEVEN if uneven else Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])

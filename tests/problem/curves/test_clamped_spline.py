@@ -219,9 +219,7 @@ def test_knots_are_numbers_of_one_kind_however_they_are_given():
 
 
 @pytest.mark.parametrize(("degree", "orders"), [(3, (1,)), (5, (1, 2))])
-def test_inner_knots_at_the_times_of_way_points_make_a_spline(
-    degree: int, orders: tuple[int, ...]
-) -> None:
+def test_inner_knots_at_times_of_points_make_a_spline(degree: int, orders: tuple[int, ...]) -> None:
     curve = ClampedBSpline(5, degree, end_orders=orders)
     rng = np.random.default_rng(degree)
     q, h = rng.normal(size=(5, 2)), rng.uniform(0.5, 1.5, 4)
@@ -229,10 +227,7 @@ def test_inner_knots_at_the_times_of_way_points_make_a_spline(
     spline = curve.polynomial_form()
     np.testing.assert_allclose(fit(spline, q, h)(at), fit(curve, q, h)(at), atol=1e-9)
     assert spline is not curve
-    for knots, places in (
-        (Knots.WAYPOINTS, Parameters.CHORD),
-        (Knots.CONTINUED, Parameters.TIMES),
-    ):
+    for knots, places in ((Knots.WAYPOINTS, Parameters.CHORD), (Knots.CONTINUED, Parameters.TIMES)):
         other = ClampedBSpline(5, 5, knots, places)
         assert other.polynomial_form() is other
 
@@ -263,9 +258,7 @@ def test_chords_need_waypoints_that_differ() -> None:
     problem, h = clamped((5, "averaged-continued", "chord", "timed"), 13)
     still = problem.waypoints.copy()
     still[4] = still[3]
-    with pytest.raises(
-        TrajgapError, match="waypoints: 3 and 4 coincide, so chord parameters cannot"
-    ):
+    with pytest.raises(TrajgapError, match="waypoints: 3 and 4 coincide, so chord parameters"):
         fit(problem.curve, still, h)
 
 
@@ -304,10 +297,7 @@ PRINTED = {"parameters": "given", "time": "stretched"}
             {"knots": "waypoints", "knot_vector": vector(5)},
             'knot_vector: is for knots that are "gi',
         ),
-        (
-            {"parameters": "chord"},
-            'if knots are "given" and time is "timed", way-points are pas',
-        ),
+        ({"parameters": "chord"}, 'if knots are "given" and time is "timed", way-points are pas'),
         ({**PRINTED, "parameters": "chord"}, 'if knots are "given" and time is "stretched"'),
         (PRINTED, 'fractions: are missing where parameters are "given"'),
         (

@@ -139,10 +139,10 @@ def test_checker_batch_and_dense_samples_agree(name: str, uneven: bool) -> None:
         sampled = np.maximum(0.0, np.maximum(-least / below, most / above))
         assert (sampled <= found.ratios[0, :, r] * (1 + 1e-9) + 1e-9).all()
         assert found.ratios[0, :, r] == pytest.approx(sampled, rel=1e-4, abs=1e-6)
-    dense = position_ratios(
+    whole = position_ratios(
         ends(problem, h, nodal, 0), limits.position_lower, limits.position_upper
     )
-    assert found.positions[0] == pytest.approx(dense, abs=1e-5)
+    assert found.positions[0] == pytest.approx(whole, abs=1e-5)
 
 
 @each

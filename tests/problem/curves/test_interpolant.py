@@ -116,9 +116,7 @@ def test_declarations_compare_by_value() -> None:
         (((3, 0.0),), "C2 cubic spline with jerk given at the ends"),
     ],
 )
-def test_cubic_splines_are_named_by_what_holds_at_their_ends(
-    ends: tuple[tuple[int, float], ...], name: str
-) -> None:
+def test_cubic_splines_are_named_by_ends(ends: tuple[tuple[int, float], ...], name: str) -> None:
     assert cubic_spline(5, ends).name == name
 
 

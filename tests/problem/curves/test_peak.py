@@ -94,19 +94,14 @@ def test_any_polynomial(coefficients: list[float]) -> None:
         assert (np.abs(peaks - expected) <= room).all()
 
 
-ROOTS = st.lists(st.floats(0.0, 1.0), min_size=1, max_size=7)
-
-
-@given(ROOTS, st.integers(1, 3), st.floats(-2, 2))
+@given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=7), st.integers(1, 3), st.floats(-2, 2))
 @example([0.3, 0.3], 2, 0.4)
 @example([0.5], 3, 0.0)
 @example([0.25, 0.75], 1, -0.1)
 @example([0.0, 1.0], 1, 0.3)
 @example([0.999999, 1.0], 2, 0.0)
 @example([1e-9, 2e-9, 0.5], 1, 0.2)
-def test_clustered_and_multiple_turning_points(
-    roots: list[float], multiplicity: int, shift: float
-) -> None:
+def test_clusters_of_turning_points(roots: list[float], multiplicity: int, shift: float) -> None:
     # velocity = shift + ∫ Π (s − root): its turning points are the roots of odd multiplicity
     factors = (roots * multiplicity)[:7]
     p = Power.fromroots(factors).integ(k=shift)

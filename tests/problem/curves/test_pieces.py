@@ -54,9 +54,7 @@ def test_steps_are_those_of_the_pieces_on_both_sides() -> None:
 
 
 @pytest.mark.parametrize("kind", ["cubic", "quintic"])
-def test_pieces_that_bounds_leave_out_change_nothing(
-    kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pieces_that_are_left_out_do_nothing(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     walk = long_problem(long_curves(130)[kind])
     low = walk.waypoints.min(axis=0) - 0.1
     problem = replace(walk, limits=walk.limits.with_positions(low, [np.inf, 90.0]))

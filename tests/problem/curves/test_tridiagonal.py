@@ -47,9 +47,7 @@ def test_derivatives_are_within_their_bounds_of_exact_ones(name: str, spread: fl
 
 
 @pytest.mark.parametrize("name", ENDS)
-def test_a_solution_that_is_off_is_bounded_all_the_same(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_solution_that_is_off_is_bounded(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Velocities up and down by turns leave the least residual for their size."""
     curve, solver = ENDS[name], lapack.dptsv
     q, h = drawn(curve, 0.3, 4)
@@ -94,9 +92,7 @@ def test_durations_beyond_the_analysis_are_left_to_the_blocks(duration: float) -
     assert check(Problem(q, limits, curve), h).verdict is Verdict.PASS
 
 
-def test_a_limit_that_the_first_bound_leaves_open_is_judged_by_the_closer_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_limit_left_open_is_judged_by_the_closer_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     curve = cubic_spline(120)
     q, h = drawn(curve, 0.3, 6)
     peaks = check(Problem(q, Limits([1.0] * 2, [1.0] * 2), curve), h).peaks

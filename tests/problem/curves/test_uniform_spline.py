@@ -41,9 +41,7 @@ def test_vertices_meet_the_waypoint_equations_exactly(count: int, natural: bool)
 
 
 def test_declarations_are_checked() -> None:
-    with pytest.raises(
-        TrajgapError, match=r"interpolant.time: 'both' is unknown; use stretched or"
-    ):
+    with pytest.raises(TrajgapError, match=r"interpolant.time: 'both' is unknown; use stretched"):
         uniform_cubic_b_spline(5, "both")
     with pytest.raises(TrajgapError, match=r"interpolant.time_ends: goes with time = 'timed'"):
         uniform_cubic_b_spline(5, "stretched", natural_clock=True)
@@ -71,9 +69,7 @@ def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
 
 @pytest.mark.parametrize("time", ["timed", NATURAL])
 @pytest.mark.parametrize("seed", range(3))
-def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(
-    seed: int, time: str
-) -> None:
+def test_derivatives_are_finite_differences_of_another_inversion(seed: int, time: str) -> None:
     problem, h = uniform(time, seed)
     other = ByScipy(problem.waypoints, h, time == NATURAL)
     trajectory = fit(problem.curve, problem.waypoints, h)
@@ -112,9 +108,7 @@ def test_time_must_not_run_backwards() -> None:
     problem, _ = uniform("timed", 14)
     h = np.array([1.0, 0.05, 2.0, 0.04, 1.0])
     assert np.isinf(evaluate(problem, h[None]).ratios).all()
-    with pytest.raises(
-        CurveError, match=r"^durations: time would not increase along the curve, dt/"
-    ):
+    with pytest.raises(CurveError, match=r"^durations: time would not increase along the curve, "):
         fit(problem.curve, problem.waypoints, h)
     verdict = check(problem, h)
     assert verdict.verdict is verdict.limits is Verdict.VIOLATED

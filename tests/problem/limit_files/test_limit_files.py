@@ -41,7 +41,7 @@ joint_limits:
 
 def write(folder, name, text):
     path = folder / name
-    path.write_text(text, encoding="utf-8")
+    path.write_text(text, "utf-8")
     return path
 
 
@@ -183,9 +183,6 @@ def test_flags_that_are_none(given, wanted):
         limits_of_flags(given, ("a", "b"), np.ones(2))
 
 
-TWO_ARMS = "joint_limits: {left_1: {max_velocity: 1}, right_1: {}}\n"
-
-
 @pytest.mark.parametrize(
     ("files", "joints", "wanted"),
     [
@@ -212,7 +209,7 @@ def test_a_joint_whose_limits_stand_under_another_name(tmp_path, files, joints, 
         "arm.urdf": ARM,
         "l.yaml": YAML,
         "misspelt.yaml": YAML.replace("turn:", "turm:"),
-        "two_arms.yaml": TWO_ARMS,
+        "two_arms.yaml": "joint_limits: {left_1: {max_velocity: 1}, right_1: {}}\n",
     }
     sources = [
         limits_of_flags({"velocity": "1"}, joints, np.ones(len(joints)))

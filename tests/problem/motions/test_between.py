@@ -62,14 +62,12 @@ def test_dense_samples_prove_a_violation_that_is_there(order, word):
     peak = np.abs(value(time, order)).max(axis=0)
     sizes = [np.inf] * 3
     sizes[order - 1] = 0.999 * peak.min()
-    found = check_samples(
-        Samples(NAMES, time, value(time, 0)), JointLimits.from_values(NAMES, *sizes)
-    )
-    assert found.verdict is Verdict.VIOLATED
-    assert found.worst.quantity == word
-    assert found.worst.ratio == pytest.approx(peak.max() / sizes[order - 1], rel=2e-3)
-    assert found.stretch == pytest.approx((peak.max() / sizes[order - 1]) ** (1 / order), rel=2e-3)
-    assert found.feasible_time is None
+    it = check_samples(Samples(NAMES, time, value(time, 0)), JointLimits.from_values(NAMES, *sizes))
+    assert it.verdict is Verdict.VIOLATED
+    assert it.worst.quantity == word
+    assert it.worst.ratio == pytest.approx(peak.max() / sizes[order - 1], rel=2e-3)
+    assert it.stretch == pytest.approx((peak.max() / sizes[order - 1]) ** (1 / order), rel=2e-3)
+    assert it.feasible_time is None
 
 
 def test_noise_is_averaged_over_wider_windows():
@@ -135,11 +133,11 @@ def exact(times: list[Fraction], values: list[Fraction], order: int, stride: int
     """Of each window the order-th derivative and the sum of its absolute weights, in rationals."""
     for k in range(len(times) - order * stride):
         t, q = (one[k::stride][: order + 1] for one in (times, values))
-        weights = [
+        shares = [
             factorial(order) / prod((a - b for b in t if b != a), start=Fraction(1)) for a in t
         ]
-        value = sum((w * x for w, x in zip(weights, q, strict=True)), Fraction(0))
-        yield value, sum(map(abs, weights), Fraction(0))
+        value = sum((w * x for w, x in zip(shares, q, strict=True)), Fraction(0))
+        yield value, sum(map(abs, shares), Fraction(0))
 
 
 def rational(numbers: Array, shift: Array | None = None) -> list[Fraction]:

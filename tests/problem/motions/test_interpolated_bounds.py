@@ -36,11 +36,9 @@ def drawn(seed: int, uneven: bool) -> Samples:
 def exact(how: str, samples: Samples, shaken: np.random.Generator | None):
     """The exact curve of the samples; of others within their noise if they are shaken."""
 
-    def moved(numbers, noise):
-        shift = np.zeros(numbers.shape) if shaken is None else shaken.choice([-1.0, 1.0], 8) * noise
-        return [
-            Fraction(float(x)) + Fraction(float(d)) for x, d in zip(numbers, shift, strict=True)
-        ]
+    def moved(values, noise):
+        shift = np.zeros(values.shape) if shaken is None else shaken.choice([-1.0, 1.0], 8) * noise
+        return [Fraction(float(x)) + Fraction(float(d)) for x, d in zip(values, shift, strict=True)]
 
     times = moved(samples.time, samples.clock)
     columns = [moved(samples.given(r)[:, 0], samples.doubt(r)[0]) for r in range(3)]
@@ -71,10 +69,10 @@ def test_bounds_hold_for_exact_and_for_shaken_samples(how, uneven, shaken):
     for seed in range(6):
         rng, plain = np.random.default_rng([seed, 7]), drawn(seed, uneven)
         noise = rng.choice([0.0, 1e-7, 1e-3], 4) * shaken
-        rounding = HalfUnits(
+        halves = HalfUnits(
             noise[3] * float(np.diff(plain.time).min()), np.array(noise[:3])[:, None]
         )
-        samples = dataclasses.replace(plain, rounding=rounding) if shaken else plain
+        samples = dataclasses.replace(plain, rounding=halves) if shaken else plain
         for _ in range(3 if shaken else 1):
             motion = check_bounds(how, samples, exact(how, samples, rng if shaken else None))
         if not (uneven or shaken):
@@ -181,10 +179,7 @@ def test_options_replace_what_the_digits_say(tmp_path):
 
 def test_a_message_is_exact_for_its_controller_alone(tmp_path):
     points = [
-        {
-            "positions": [round(0.3 * k**2, 3)],
-            "time_from_start": {"sec": k, "nanosec": 0},
-        }
+        {"positions": [round(0.3 * k**2, 3)], "time_from_start": {"sec": k, "nanosec": 0}}
         for k in range(6)
     ]
     (tmp_path / "m.json").write_text(json.dumps({"joint_names": ["a"], "points": points}))

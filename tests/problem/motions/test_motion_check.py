@@ -72,11 +72,7 @@ def test_the_nearer_side_is_shown_with_the_bounds_of_both():
 
 @pytest.mark.parametrize(
     ("least", "most", "why"),
-    [
-        (1.1, 1.3, "is exceeded"),
-        (0.9, 1.3, "may be exceeded"),
-        (0.8, 0.9, None),
-    ],
+    [(1.1, 1.3, "is exceeded"), (0.9, 1.3, "may be exceeded"), (0.8, 0.9, None)],
 )
 def test_going_slower_does_not_move_the_path(least, most, why):
     position = MotionPeak("1", "position", 0.0, 1.0, 1.0, 0.9 * most, least, most, "")

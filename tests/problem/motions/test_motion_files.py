@@ -5,6 +5,7 @@ import json
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -256,12 +257,8 @@ def test_a_bag_holds_a_trajectory_and_is_readable(tmp_path, monkeypatch):
     bag = write_rows(np.random.default_rng(0), "bag", rows, tmp_path)
     with pytest.raises(CaseError, match="no topic with a trajectory; topics: /plan"):
         read_motion(bag, topic="/other")
-
-    def says_nothing(_):
-        raise ValueError
-
     with monkeypatch.context() as patched:
-        patched.setattr(rosbag, "_plain", says_nothing)
+        patched.setattr(rosbag, "_plain", Mock(side_effect=ValueError))
         with pytest.raises(CaseError, match=r"no readable bag \(ValueError\)"):
             read_motion(bag)
     for one in bag.glob("*.db3"):

@@ -14,20 +14,20 @@ from trajgap.problem.cases import StatementClaim
 from trajgap.problem.cases.load import load_case, parse_case, published_ids
 from trajgap.problem.printed.rounded import Printed
 
-TABLES = ROOT / "tests" / "support" / "published_tables"
+TABLES = ROOT / "tests/support/published_tables"
 PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
 POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
-FOLDER = ROOT / "problem" / "published"
+FOLDER = ROOT / "problem/published"
 
 
 def typed(case_id: str) -> dict:
     """The second transcription: what stands in the paper's tables, and nothing else."""
-    return tomllib.loads((TABLES / f"{case_id}.toml").read_text(encoding="utf-8"))
+    return tomllib.loads((TABLES / f"{case_id}.toml").read_text("utf-8"))
 
 
 def written(case_id: str) -> dict:
     """The case file, with the robot's table from wherever the file takes it."""
-    found = tomllib.loads((FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads((FOLDER / f"{case_id}.toml").read_text("utf-8"))
     if dh := load_case(case_id).dh:
         table = {name: [x.text for x in getattr(dh, name)] for name in ("d", "a", "alpha")}
         found["robot"]["dh"] = {"joints": dh.joints and [*dh.joints], **table}
@@ -171,7 +171,7 @@ def test_whale_has_no_waypoints_and_says_so():
 
 
 def test_whale_waypoints_dropped_into_the_file_complete_every_problem():
-    text = (FOLDER / f"{WHALE}.toml").read_text(encoding="utf-8")
+    text = (FOLDER / f"{WHALE}.toml").read_text("utf-8")
     start, end = text.index("not_printed = "), text.index("[limits]")
     angles = [[f"{0.37 * j - 0.29 * k:.4f}" for k in range(8)] for j in range(6)]
     angles[2][3] = "1.2345"
@@ -198,7 +198,7 @@ def quoted_numbers(node: object) -> set[str]:
 
 @pytest.mark.parametrize("case_id", [PUMA, IRB, POLISH, WHALE])
 def test_no_number_is_in_the_file_that_is_not_in_the_transcription(case_id):
-    document = tomllib.loads((FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"))
+    document = tomllib.loads((FOLDER / f"{case_id}.toml").read_text("utf-8"))
     numbers = quoted_numbers(document)
     assert len(numbers) >= (5 if case_id == WHALE else 16)
     assert numbers <= quoted_numbers(typed(case_id))
@@ -230,18 +230,16 @@ def test_everything_left_open_has_a_choice(case_id):
     if len(case.readings) > 1:
         assert {reading.id for reading in case.readings} <= assumed
     # Only limits and settings are exact; a bare number anywhere else would lose its digits.
-    document = tomllib.loads(
-        (FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"), parse_float=Decimal
-    )
+    document = tomllib.loads((FOLDER / f"{case_id}.toml").read_text("utf-8"), parse_float=Decimal)
     assert not any(isinstance(v, Decimal) for claim in document["claims"] for v in claim.values())
 
 
-_PAGE = ROOT / "docs" / "reference" / "claim-checklist.md"
+_PAGE = ROOT / "docs/reference/claim-checklist.md"
 
 
 def _cells(section: int) -> list[list[str]]:
     """The table of a section of the page, its header first."""
-    text = _PAGE.read_text(encoding="utf-8").split("\n## ")[section]
+    text = _PAGE.read_text("utf-8").split("\n## ")[section]
     rows = [line for line in text.splitlines() if line[:1] == "|"]
     return [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
 

@@ -69,11 +69,9 @@ def test_jacobian_equals_differences(chain):
     pose = forward_kinematics(chain, q)
     for j in range(chain.joints):
         step = h * np.eye(chain.joints)[j]
-        slope = (forward_kinematics(chain, q + step) - forward_kinematics(chain, q - step)) / (
-            2 * h
-        )
-        np.testing.assert_allclose(jacobian[:3, j], slope[:3, 3], atol=1e-8)
-        spin = slope[:3, :3] @ pose[:3, :3].T
+        rate = (forward_kinematics(chain, q + step) - forward_kinematics(chain, q - step)) / (2 * h)
+        np.testing.assert_allclose(jacobian[:3, j], rate[:3, 3], atol=1e-8)
+        spin = rate[:3, :3] @ pose[:3, :3].T
         expected = [spin[2, 1], spin[0, 2], spin[1, 0]]
         np.testing.assert_allclose(jacobian[3:, j], expected, atol=1e-8)
 

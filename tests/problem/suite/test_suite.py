@@ -90,7 +90,7 @@ def test_the_spreadsheet_is_the_table() -> None:
 
 def test_the_docs_count_what_is_there() -> None:
     rows = [one.model_dump(mode="json") for one in list_instances()]
-    text = (ROOT / "docs" / "suite" / "index.md").read_text("utf-8")
+    text = (ROOT / "docs/suite/index.md").read_text("utf-8")
     assert benchmark("suite_table")["counted"](text, rows) == text, "run make_suite.py table"
 
 
@@ -278,14 +278,14 @@ def test_the_command_of_a_row_makes_its_certificate() -> None:
 def loaded(one: BenchmarkInstance, folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """The loader of the docs, and what it reads."""
     file = folder / f"{one.name}.toml"
-    file.write_text(plain_text(one), encoding="utf-8")
+    file.write_text(plain_text(one), "utf-8")
     names: dict[str, Any] = {}
     exec(LOADER, names)
     return names, names["load"](file)
 
 
 def test_the_docs_show_the_loader() -> None:
-    text = (ROOT / "docs" / "suite" / "index.md").read_text("utf-8")
+    text = (ROOT / "docs/suite/index.md").read_text("utf-8")
     assert f"```python\n{LOADER}```" in text
     assert "trajgap" not in LOADER
 

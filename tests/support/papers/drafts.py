@@ -132,12 +132,10 @@ def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
     true = np.cumsum(steps, axis=0) * np.pi / 180 / ANGLES[main]
     places = int(rng.choice([0, 1, 2, 3])) if main == "deg" else int(rng.choice([2, 3, 4]))
     how = str(rng.choice(["exact", "round", "round", "cut"]))
-    points = [
-        [printed(x, places, "round" if how == "exact" else how) for x in row] for row in true.T
-    ]
+    rows = [[printed(x, places, "round" if how == "exact" else how) for x in row] for row in true.T]
     if how == "exact":
-        true = np.array([[float(t) for t in row] for row in points]).T
-    if (np.ptp(np.array([[float(t) for t in row] for row in points]), axis=1) == 0).any():
+        true = np.array([[float(t) for t in row] for row in rows]).T
+    if (np.ptp(np.array([[float(t) for t in row] for row in rows]), axis=1) == 0).any():
         raise NoCurveError("a joint stands still")
 
     orders = [(1, 2), (1, 2), (1, 2, 3), (2,), (1,), (1, 3)][int(rng.integers(6))]
@@ -165,7 +163,7 @@ def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
         name=name,
         family=family,
         units=units,
-        points=points,
+        points=rows,
         true_points=true * ANGLES[main],
         limits=limits,
         exact_points=bool(how == "exact" and rng.random() < 0.5),

@@ -38,7 +38,7 @@ from trajgap.problem.cases.instances import instance_waypoints
 
 WHALE = "z1-woa-bspline"
 
-SMALL = (ROOT / "tests" / "support" / "family.toml").read_text("utf-8")
+SMALL = (ROOT / "tests/support/family.toml").read_text("utf-8")
 
 UNSOLVED = (
     ("upper = 8", "upper = 0.05"),
@@ -307,7 +307,7 @@ def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
 
 
 def test_the_page_names_the_readings_and_the_share_of_the_rule() -> None:
-    page = (ROOT / "docs" / "measurements" / "families.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/measurements/families.md").read_text("utf-8")
     page, _, _ = page.partition("\n\n## Sixty instances")
     (block,) = load_case(WHALE).instances
     assert f"{100 * MIDDLE:g} %" in page

@@ -7,29 +7,27 @@ import pytest
 from support.findings import audited_text, finding, verdicts
 from support.made_up import claim, paper, sentence, total
 from trajgap.compare.audits.stated import timed_along_path
-from trajgap.compare.documents import ALONG_PATH, Basis, ClaimVerdict, Why
+from trajgap.compare.documents import ALONG_PATH, Basis, ClaimVerdict, Finding, Why
 from trajgap.nlp.retiming import retime
 from trajgap.problem import CaseError, Limits, fit, parse_case, quintic_spline
 
 NATURAL = {"family": "cubic-spline", "end_orders": [2]}
-SPACED = {"ratios": "equal"}
+MOVING = {"family": "cubic-spline", "end_orders": [1], "end_derivatives": [0.2]}
+STOPPING = {"family": "rest-to-rest", "degree": 5}
 LINE = [[0, 1, 2, 3], [0, 0.5, 1, 1.5]]
 """A straight line: 3 rad of the first joint in 3 s / 2 + 2 s / 4 within 2 rad/s and 4 rad/s^2."""
 LIMITS = {"velocity": [2, 9], "acceleration": [4, 9]}
-DIGITS = {"velocity": ["2", "9"], "acceleration": ["4", "9"]}
 
 
-def along(
-    rows: list[list[Any]],
-    value: str,
-    *parts: str,
-    path: str = "curve",
-    limits: dict[str, Any] = LIMITS,
-    **given: Any,
-) -> str:
-    keys = {"curve": NATURAL, "bounds": SPACED} | given
+def along(rows: Any, value: str, *parts: str, path: str = "curve", **given: Any) -> str:
+    limits = given.pop("limits", LIMITS)
+    keys = {"curve": NATURAL, "bounds": {"ratios": "equal"}} | given
     printed = total("t", value, path=path, other_curve="re-timed")
     return paper(rows, printed, *parts, **keys, **limits)
+
+
+def ends_of(found: Finding) -> list[float]:
+    return [float(one) for one in str(found.computed).removesuffix(" s").split(" to ")]
 
 
 OPTIMAL = sentence("s", "optimal", "t")
@@ -45,22 +43,18 @@ OPTIMAL = sentence("s", "optimal", "t")
         ("2.3", ClaimVerdict.NOT_CHECKABLE, "longer"),
     ],
 )
-def test_a_total_on_a_straight_line_beside_its_trapezoid(
-    value: str, verdict: ClaimVerdict, kind: str
-) -> None:
+def test_a_straight_line_beside_its_trapezoid(value: str, verdict: ClaimVerdict, kind: str) -> None:
     found = finding(along(LINE, value), "t", "TG305")
     assert (found.verdict, found.kind, found.basis) == (verdict, kind, Basis.ENCLOSURE)
 
 
-@pytest.mark.parametrize(
-    ("value", "verdict"),
-    [("2.0", ClaimVerdict.SUPPORTED), ("2.3", ClaimVerdict.INCONSISTENT)],
-)
-def test_a_longer_total_is_not_optimal(value: str, verdict: ClaimVerdict) -> None:
-    assert finding(along(LINE, value, OPTIMAL), "s", "TG305").verdict is verdict
+def test_a_longer_total_is_not_optimal() -> None:
+    for value, verdict in (("2.0", ClaimVerdict.SUPPORTED), ("2.3", ClaimVerdict.INCONSISTENT)):
+        assert finding(along(LINE, value, OPTIMAL), "s", "TG305").verdict is verdict
 
 
 def test_digits_of_limits_open_both_bounds() -> None:
+    digits = {"velocity": ["2", "9"], "acceleration": ["4", "9"]}
     # 3 rad take 1.6 s within the loosest, 3 rad/s and 5 rad/s^2 cut off, and 2.4286 s within the
     # tightest, 1.5 rad/s and 3.5 rad/s^2.
     for value, verdict in (
@@ -70,9 +64,9 @@ def test_digits_of_limits_open_both_bounds() -> None:
         ("2.44", ClaimVerdict.NOT_CHECKABLE),
         ("2.46", ClaimVerdict.INCONSISTENT),
     ):
-        found = finding(along(LINE, value, OPTIMAL, limits=DIGITS), "s", "TG305")
+        found = finding(along(LINE, value, OPTIMAL, limits=digits), "s", "TG305")
         assert found.verdict is verdict, found.sentences
-    low, high = map(float, str(found.computed).removesuffix(" s").split(" to "))
+    low, high = ends_of(found)
     assert (low, high) == pytest.approx((1.6, 3 / 1.5 + 1.5 / 3.5), rel=2e-3)
     assert low <= 1.6 < 3 / 1.5 + 1.5 / 3.5 < high
 
@@ -90,7 +84,7 @@ def test_digits_of_points_bend_the_path() -> None:
     plain = finding(along(wave(12), "9", limits=EXACT), "t", "TG305")
     assert plain.kind == "longer"
     assert finding(along(wave(12, 5), "9", limits=EXACT), "t", "TG305").kind == "longer"
-    lower, upper = map(float, str(plain.computed).removesuffix(" s").split(" to "))
+    lower, upper = ends_of(plain)
     assert upper < 1.001 * lower
     # With two decimals the curvature is open, and a little more is no longer longer.
     much = f"{1.02 * upper:.4f}"
@@ -99,10 +93,8 @@ def test_digits_of_points_bend_the_path() -> None:
 
 
 def test_sampled_points_leave_open_what_two_splines_differ() -> None:
-    def ends(points: int, path: str) -> tuple[float, float]:
-        found = finding(along(wave(points), "9", path=path, limits=EXACT), "t", "TG305")
-        low, high = map(float, str(found.computed).removesuffix(" s").split(" to "))
-        return low, high
+    def ends(points: int, path: str) -> list[float]:
+        return ends_of(finding(along(wave(points), "9", path=path, limits=EXACT), "t", "TG305"))
 
     sampled = finding(along(wave(30), "9", path="sampled", limits=EXACT), "t", "TG305")
     assert sampled.basis is Basis.COMPUTED
@@ -115,22 +107,20 @@ def test_sampled_points_leave_open_what_two_splines_differ() -> None:
 
 def honest(seed: int) -> str:
     """A paper that rounds TOPPRA's time along its path, and calls it optimal."""
-    random = np.random.default_rng(seed)
-    joints, points = int(random.integers(2, 4)), 400
-    waves, turns, phases = (
-        random.uniform(*ends, (3, joints)) for ends in ((-1, 1), (1, 5), (0, 6))
-    )
+    rng = np.random.default_rng(seed)
+    joints, points = int(rng.integers(2, 4)), 400
+    sizes, bends, shifts = (rng.uniform(*ends, (3, joints)) for ends in ((-1, 1), (1, 5), (0, 6)))
 
     def path(count: int) -> np.ndarray:
         u = np.linspace(0.0, 1.0, count)[:, None]
-        return sum(waves[k] / (k + 1) * np.sin(turns[k] * u + phases[k]) for k in range(3))
+        return sum(sizes[k] / (k + 1) * np.sin(bends[k] * u + shifts[k]) for k in range(3))
 
-    caps = random.uniform(0.3, 3.0, joints), random.uniform(0.5, 8.0, joints)
+    caps = rng.uniform(0.3, 3.0, joints), rng.uniform(0.5, 8.0, joints)
     dense = fit(quintic_spline(points, ((3, 0.0), (4, 0.0))), path(points + 1), np.ones(points))
     found = retime(dense, Limits(*caps), end_speeds=(0.0, 0.0), gridpoints=(12, 25, 50))
     assert found.applicable
-    places, own, few = random.integers(4, 9), random.integers(2, 5), random.integers(2, 4)
-    rows = [[f"{v:.{places}f}" for v in row] for row in path(int(random.integers(30, 90))).T]
+    places, own, few = rng.integers(4, 9), rng.integers(2, 5), rng.integers(2, 4)
+    rows = [[f"{v:.{places}f}" for v in row] for row in path(int(rng.integers(30, 90))).T]
     digits = [[f"{v:.{few}f}" for v in row] for row in caps]
     spline = {"family": "quintic-spline", "end_orders": [3, 4]} if seed % 2 else NATURAL
     limits = dict(zip(("velocity", "acceleration"), digits, strict=True))
@@ -150,14 +140,8 @@ def test_an_honest_total_along_a_sampled_path_is_not_accused(seed: int) -> None:
     [
         (along(wave(12), "9", path="sampled", limits=EXACT), "fewer than 20 points sample"),
         (along(LINE, "9", bounds={"ratios": ["1.0", "1.0", "1.1"]}), "do not settle the path"),
-        (
-            along(LINE, "9", curve={**NATURAL, "end_orders": [1], "end_derivatives": [0.2]}),
-            "do not settle the path",
-        ),
-        (
-            along(wave(12), "9", curve={"family": "rest-to-rest", "degree": 5}, limits=EXACT),
-            "all joints stand still",
-        ),
+        (along(LINE, "9", curve=MOVING), "do not settle the path"),
+        (along(wave(12), "9", curve=STOPPING, limits=EXACT), "all joints stand still"),
         (along(LINE, "9", limits={"velocity": [2, 9]}), "no acceleration is limited"),
     ],
 )
@@ -198,29 +182,24 @@ def test_a_path_that_is_not_computed_is_said_in_its_step() -> None:
     assert isinstance(found.steps[-1].time, Why)
 
 
+PHASES = claim("p", "phases", phases=["1", "0", "1"], path="curve", other_curve="o")
+
+
 @pytest.mark.parametrize(
-    ("text", "message"),
+    ("part", "ratios", "message"),
     [
+        (total("t", "2", path="curve"), "equal", '"curve" requires other_curve, and excludes prof'),
         (
-            paper(LINE, total("t", "2", path="curve"), curve=NATURAL, bounds=SPACED, **LIMITS),
-            r'path: "curve" requires other_curve, and excludes profile',
+            total("t", "2", path="sampled", other_curve="o"),
+            None,
+            'path: "sampled" needs durations.ratios, at which the curve has one path; add it',
         ),
-        (
-            paper(LINE, total("t", "2", path="sampled", other_curve="o"), curve=NATURAL, **LIMITS),
-            r'path: "sampled" needs durations.ratios, at which the curve has one path; add it',
-        ),
-        (
-            paper(
-                LINE,
-                claim("p", "phases", phases=["1", "0", "1"], path="curve", other_curve="o"),
-                curve=NATURAL,
-                bounds=SPACED,
-                **LIMITS,
-            ),
-            r"profile: is missing",
-        ),
+        (PHASES, "equal", "profile: is missing"),
     ],
 )
-def test_a_path_goes_with_fixed_ratios_and_another_curve(text: str, message: str) -> None:
+def test_a_path_goes_with_fixed_ratios_and_another_curve(
+    part: str, ratios: str | None, message: str
+) -> None:
+    bounds = {"ratios": ratios} if ratios else None
     with pytest.raises(CaseError, match=message):
-        parse_case(text, "made-up.toml")
+        parse_case(paper(LINE, part, curve=NATURAL, bounds=bounds, **LIMITS), "made-up.toml")

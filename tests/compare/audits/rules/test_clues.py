@@ -80,11 +80,7 @@ def test_printed_limits_stand_beside_a_data_sheet(limit: Any, rad: Speaks, deg: 
 
 @pytest.mark.parametrize(
     ("points", "rad"),
-    [
-        ("0.000 3.142 -6.283", FOR),
-        ("0.000 3.142 1.300", AGAINST),
-        ("0.000 3.143 1.300", AGAINST),
-    ],
+    [("0.000 3.142 -6.283", FOR), ("0.000 3.142 1.300", AGAINST), ("0.000 3.143 1.300", AGAINST)],
 )
 def test_angles_are_multiples_of_pi_within_their_rounding(points: str, rad: Speaks) -> None:
     found = clues(turns(), points=points)

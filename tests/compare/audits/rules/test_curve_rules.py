@@ -41,10 +41,10 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 def vertices_on(curve: dict[str, Any], *more: str) -> list[Finding]:
     """Of four way-points, and vertices that are those of no uniform cubic B-spline."""
-    printed = claim(
+    stated = claim(
         "v", "control_vertices", joint_rows=[["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
     )
-    text = paper(["0.1 1.2 -0.4 0.7"], printed, *more, curve=curve, velocity=3)
+    text = paper(["0.1 1.2 -0.4 0.7"], stated, *more, curve=curve, velocity=3)
     return judged(study_of(text), "TG205")
 
 
@@ -206,9 +206,7 @@ def test_a_stretched_curve_is_smooth_only_with_the_proportions_of_its_chords() -
         assert found.kind == kind
 
 
-def test_acceleration_said_to_jump_does_in_the_reading_that_stretches(
-    motions: list[Finding],
-) -> None:
+def test_acceleration_said_to_jump_does_in_the_stretched_reading(motions: list[Finding]) -> None:
     found = {f.reading: f for f in of(motions, "TG206", "acceleration-jumps")}
     assert len(found) == 19
     for reading, one in found.items():

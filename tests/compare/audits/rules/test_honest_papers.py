@@ -40,9 +40,7 @@ def test_what_is_said_of_a_total_is_said_of_its_durations_alone() -> None:
 
 
 @pytest.mark.parametrize("seed", range(28))
-def test_totals_that_are_kept_apart_and_profiles_from_rest_are_accused_of_nothing(
-    seed: int,
-) -> None:
+def test_totals_kept_apart_and_profiles_from_rest_are_accused_of_nothing(seed: int) -> None:
     found = found_by(study_of(apart(seed)), *RULES)
     assert accused(found) == []
     assert decided(found)["profile"] is decided(found)["abstract"] is ClaimVerdict.SUPPORTED
@@ -108,9 +106,7 @@ def test_digits_stand_for_all_that_they_may_be_cut_off_or_rounded_from(
 @pytest.mark.parametrize(
     ("time", "value", "refuted"), [("1.801", "1.802", False), ("1.7", "1.7", True)]
 )
-def test_a_duration_cut_off_beside_its_total_rounded_is_not_below_the_optimum(
-    time: str, value: str, refuted: bool
-) -> None:
+def test_a_duration_cut_off_beside_its_total_rounded(time: str, value: str, refuted: bool) -> None:
     """1.80167 s, the proven optimum, cut off to 1.801 and rounded to 1.802: 1.8015 fits both."""
     tail = row("m", time, total=value) + sentence("best", "optimal", "m")
     text = one_joint("0, 1", repr(PEAK / 1.80167), "1.80168", "within_limits", tail)
@@ -121,9 +117,7 @@ def test_a_duration_cut_off_beside_its_total_rounded_is_not_below_the_optimum(
 
 
 @pytest.mark.parametrize(("value", "longest"), [("3.913", 3.916), ("3.914", 3.915)])
-def test_a_total_that_is_the_sum_of_the_printed_durations_bounds_no_more_than_they_do(
-    value: str, longest: float
-) -> None:
+def test_a_total_that_is_their_sum_bounds_no_more(value: str, longest: float) -> None:
     """1.336 + 1.580 + 0.997 = 3.913; each may be cut off, and then so may their sum by 0.003."""
     study = study_of(paper([[0, 1, 2, 3]], row("m", "1.336 1.580 0.997", total=value), velocity=1))
     (found,) = printed_rows(study, study.case.claim("m"))
@@ -131,9 +125,7 @@ def test_a_total_that_is_the_sum_of_the_printed_durations_bounds_no_more_than_th
 
 
 @pytest.mark.parametrize(("value", "agrees"), [("2.635", True), ("2.638", False)])
-def test_a_total_of_digits_cut_off_agrees_with_the_total_of_the_whole_numbers(
-    value: str, agrees: bool
-) -> None:
+def test_a_total_cut_off_agrees_with_that_of_the_whole_numbers(value: str, agrees: bool) -> None:
     """0.6544 + 0.6408 + 0.5217 + 0.8184 is 2.6353; the digits that are left sum to 2.633."""
     table = row("table", "0.654 0.640 0.521 0.818", total="2.633", algorithm="new")
     head = total("head", value, of="table") + algorithms("new")
@@ -154,9 +146,7 @@ def test_a_total_of_digits_cut_off_agrees_with_the_total_of_the_whole_numbers(
         ("3.521", "3.523", False),  # of as many digits: neither is the other one rounded up
     ],
 )
-def test_a_total_of_fewer_digits_elsewhere_may_be_rounded_up(
-    table: str, value: str, agrees: bool
-) -> None:
+def test_a_total_of_fewer_digits_may_be_rounded_up(table: str, value: str, agrees: bool) -> None:
     text = paper([[0, 1]], row("d", table), total("head", value, of="d"), velocity=1.9)
     found = finding(text, "head", "TG105")
     assert (found.verdict is ClaimVerdict.SUPPORTED) == agrees
@@ -173,9 +163,7 @@ def test_a_total_of_fewer_digits_elsewhere_may_be_rounded_up(
         ("3.599", "3.6", False),
     ],
 )
-def test_a_printed_peak_above_a_printed_limit_contradicts_what_is_said_of_limits(
-    value: str, limit: str, wrong: bool
-) -> None:
+def test_a_printed_peak_contradicts_what_limits_say(value: str, limit: str, wrong: bool) -> None:
     text = one_joint("0, 1", limit, "0.60", "within_limits", peak("p", "d", "velocity", value))
     said = said_of(study_of(text), "s", "TG209")
     assert [f.verdict for f in said] == [ClaimVerdict.INCONSISTENT] * wrong
@@ -214,9 +202,7 @@ def test_the_state_before_an_optimisation_breaks_no_limit(keys: dict[str, str]) 
         ("0.987 1.974 1.480", "4.441", gain("a", "b", percent="4.2"), Severity.ERROR),
     ],
 )
-def test_two_algorithms_that_print_the_optimum_print_alike(
-    times: str, value: str, tail: str, severity: Severity
-) -> None:
+def test_two_that_print_the_optimum(times: str, value: str, tail: str, severity: Severity) -> None:
     text = paper([[0, 1, 3, 1.5]], velocity=1.9)
     for name, kind in (("a", "pso"), ("b", "ga")):
         text += entry("algorithms", id=name, name=name, kind=kind)
@@ -253,9 +239,7 @@ def test_two_algorithms_that_print_the_optimum_print_alike(
         ("1.499", "2.47", "inconsistent", ""),
     ],
 )
-def test_a_peak_is_judged_by_the_class_of_its_distance(
-    value: str, time: str, verdict: str, word: str
-) -> None:
+def test_a_peak_is_judged_by_its_distance(value: str, time: str, verdict: str, word: str) -> None:
     text = one_joint("0, 2", "1.9", time, "optimal", peak("p", "d", "velocity", value))
     found = finding(text, "p", "TG203")
     assert found.verdict == verdict
@@ -299,15 +283,11 @@ def test_durations_may_all_have_been_rounded_up(value: str, verdict: str) -> Non
     assert finding(text, "d", "TG101").verdict == verdict
 
 
-UNCLEAR = ("0.962", Severity.WARNING, Scope.SOME)
-
-
 @pytest.mark.parametrize(
-    ("time", "severity", "scope"), [UNCLEAR, ("0.95", Severity.ERROR, Scope.ALL)]
+    ("time", "severity", "scope"),
+    [("0.962", Severity.WARNING, Scope.SOME), ("0.95", Severity.ERROR, Scope.ALL)],
 )
-def test_a_proof_is_an_error_only_where_every_reading_is_against_the_claim(
-    time: str, severity: Severity, scope: Scope
-) -> None:
+def test_a_proof_is_an_error_in_all_readings(time: str, severity: Severity, scope: Scope) -> None:
     one = audited_text(one_joint("0, 1", "1.9496", time, "within_limits", TWO_UNITS))
     against = [f for f in one.findings if f.verdict is ClaimVerdict.REFUTED]
     assert {f.claim for f in against} == {"d", "s"}

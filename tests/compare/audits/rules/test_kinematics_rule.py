@@ -163,9 +163,7 @@ THREE = {"waypoints": {"waypoint_rows": OTHER[:3]}, "interpolant": {"family": "c
 
 def test_problems_with_other_way_points_are_judged_apart() -> None:
     ways = {"waypoints": {"waypoint_rows": OTHER}}
-    parts = (
-        entry("problems", id=k, **v) for k, v in (("same", {}), ("other", ways), ("again", {}))
-    )
+    parts = (entry("problems", id=k, **v) for k, v in (("same", {}), ("other", ways), ("more", {})))
     text = case_text(PLACES, TABLE, *parts, column())
     assert {f.problem: f.verdict for f in findings(text)} == {
         "same": "supported", "other": "inconsistent"
@@ -273,9 +271,7 @@ def test_the_palletiser_is_inconsistent_under_both_units(palletiser, unit):
     assert found.verdict is ClaimVerdict.INCONSISTENT
     assert found.severity is Severity.WARNING
     for convention in ("modified", "standard"):
-        part = re.search(
-            rf"(?:positions:|;) (pick [^;]*?) m \({convention} convention\)", found.message
-        )
+        part = re.search(rf"(?:positions:|;) (pick [^;]*?) m \({convention} conv", found.message)
         printed = [float(x) for x in re.findall(r"\d\.\d{3}", part[1])]
         expected = distances(unit, convention)
         assert len(printed) == 4
@@ -285,7 +281,7 @@ def test_the_palletiser_is_inconsistent_under_both_units(palletiser, unit):
 
 
 def test_the_page_prints_these_numbers(palletiser):
-    page = (ROOT / "docs" / "reference" / "robots.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/reference/robots.md").read_text("utf-8")
     rows = dict(re.findall(r"^\| ([^|]+?) \| (\d.*) \|$", page, re.MULTILINE))
     for unit in ("rad", "deg"):
         message = palletiser[f"waypoints-{unit}"].message

@@ -146,11 +146,11 @@ def test_a_sentence_on_several_rows_speaks_of_this_one_too(
     """The own row is slow enough; what is said of all rows hangs on the blended one."""
     checks = {"all": "within_limits", "rest": "at_rest", "smooth": "continuous"}
     said = (sentence(name, check, "own", "row") for name, check in checks.items())
-    words = verdicts(
+    found = verdicts(
         audited_text(made_up(row("own", "9.00 9.00 9.00"), *said, limit=limit, **keys))
     )
-    assert words["all"] == verdict
-    assert words["rest"] == words["smooth"] == OPEN
+    assert found["all"] == verdict
+    assert found["rest"] == found["smooth"] == OPEN
 
 
 Array = NDArray[np.float64]
@@ -194,9 +194,7 @@ def moved(points: Array, durations: Array, blends: Array, ends: EndBlends) -> Ar
 
 
 @given(
-    st.lists(st.floats(-3, 3), min_size=2, max_size=5),
-    st.data(),
-    st.sampled_from(list(EndBlends)),
+    st.lists(st.floats(-3, 3), min_size=2, max_size=5), st.data(), st.sampled_from(list(EndBlends))
 )
 def test_such_a_motion_ends_at_the_last_way_point(
     points: list[float], data: st.DataObject, ends: EndBlends

@@ -73,8 +73,7 @@ def test_no_jerk_at_the_end_of_a_cubic_that_moves_is_impossible(points: str, ver
 
 
 @pytest.mark.parametrize(
-    ("points", "time", "verdict"),
-    [([0, 1], "0.40", "refuted"), ("0 1", "0.45", "not checkable")],
+    ("points", "time", "verdict"), [([0, 1], "0.40", "refuted"), ("0 1", "0.45", "not checkable")]
 )
 def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdict: str) -> None:
     """At most 0.5 s are allowed, and 0.987 s are needed: no optimum, and 0.4 s break the limit."""
@@ -90,9 +89,7 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
     [("0, 1", "0.5 0.4", "2 durations, but the curve has 1 segment"),
      ("0, 1, 2", "0.5", "1 duration, but the curve has 2 segments")],
 )  # fmt: skip
-def test_a_table_of_another_length_loads_and_is_the_finding(
-    points: str, times: str, said: str
-) -> None:
+def test_a_table_of_wrong_length_loads_and_is_found(points: str, times: str, said: str) -> None:
     one = audited_text(one_joint(points, "1.9", times, "within_limits"))
     (found,) = [f for f in one.findings if f.claim == "d" and f.rule == "TG109"]
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)

@@ -122,9 +122,7 @@ def test_what_samples_give_is_supported_and_digits_leave_room() -> None:
 
 @pytest.mark.parametrize(("derivative", "measure"), CLOSED)
 @pytest.mark.parametrize("time", [0.0151, 0.0249])
-def test_a_duration_of_few_last_digits_leaves_more_than_the_first_order(
-    derivative: str, measure: str, time: float
-) -> None:
+def test_a_duration_of_few_digits_leaves_more(derivative: str, measure: str, time: float) -> None:
     """Both are printed as 0.02 s: the square of jerk changes by a factor of 12 between them."""
     power = {"velocity": 1, "acceleration": 2, "jerk": 3}[derivative]
     power = 2 * power - 1 if measure == "integral-square" else power
@@ -268,9 +266,7 @@ def test_a_sampled_norm_is_not_called_equal() -> None:
         ("7.51", "supported", "", Confidence.PROVEN),
     ],
 )
-def test_what_a_slip_explains_is_named(
-    value: str, verdict: str, said: str, known: Confidence
-) -> None:
+def test_what_a_slip_explains(value: str, verdict: str, said: str, known: Confidence) -> None:
     """Degree 7 has its largest acceleration 84√5/25 of the way by the squared time, 7.5132."""
     parts = row("d", "1.00000"), peak("p", "d", "acceleration", value)
     text = paper([[0, 1]], *parts, curve={"family": "rest-to-rest", "degree": 7}, velocity=9)

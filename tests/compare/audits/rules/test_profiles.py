@@ -32,9 +32,7 @@ def farthest(time: float, velocity: float, acceleration: float, jerk: float) -> 
 
 @pytest.mark.parametrize("way", [0.05, 0.4, 1.5, 6.0])
 @pytest.mark.parametrize("limits", [(2.0, 4.0, 20.0), (0.6, 4.0, 20.0), (2.0, 90.0, 20.0)])
-def test_an_s_curve_goes_as_far_as_any_motion_within_its_limits(
-    way: float, limits: tuple[float, float, float]
-) -> None:
+def test_no_motion_passes_an_s_curve(way: float, limits: tuple[float, float, float]) -> None:
     time = s_curve(way, *limits)
     assert farthest(time, *limits) == pytest.approx(way, rel=5e-3)
     assert s_curve(way, *limits[:2], np.inf) == trapezoidal(way, *limits[:2], np.inf)
@@ -75,9 +73,7 @@ def of_half_sines(ramp: float, held: float, cruise: float, jerk: float) -> np.nd
     ("ramp", "held", "cruise"),
     [(0.31, 0.52, 0.77), (0.31, 0.52, 0.0), (0.31, 0.0, 0.77), (0.31, 0.0, 0.0)],
 )
-def test_half_sines_of_jerk_take_the_time_of_a_jerk_smaller_by_half_pi(
-    ramp: float, held: float, cruise: float
-) -> None:
+def test_half_sines_are_a_jerk_smaller_by_half_pi(ramp: float, held: float, cruise: float) -> None:
     way, velocity, acceleration = of_half_sines(ramp, held, cruise, 9.0)
     total = 4 * ramp + 2 * held + cruise
     assert sine_jerk(way, velocity, acceleration, 9.0) == pytest.approx(total, rel=1e-9)
@@ -97,9 +93,8 @@ def test_joints_on_a_straight_line_share_one_time_law() -> None:
     assert farthest(13 / 6, 2 / 3, 1.0, np.inf) == pytest.approx(1.0, rel=2e-2)
     # A joint that rests asks for nothing, even where it must not move.
     still = np.vstack([limits, np.zeros(3)])
-    assert resting_total("trapezoidal", np.array([[1.0, 3.0, 0.0]]), still, True) == pytest.approx(
-        13 / 6
-    )
+    way = np.array([[1.0, 3.0, 0.0]])
+    assert resting_total("trapezoidal", way, still, True) == pytest.approx(13 / 6)
     assert resting_total("s-curve", np.zeros((2, 3)), still, True) == 0.0
     assert resting_total("sine-jerk", ways, limits, True) == pytest.approx(13 / 6)
     one = np.array([[2.0, 1.0, 5.0]])
@@ -133,9 +128,7 @@ def judged(*asked: Any, **more: Any) -> Finding:
         ("s-curve", "1.00", ClaimVerdict.INCONSISTENT),
     ],
 )
-def test_a_printed_total_of_a_profile_is_judged(
-    profile: str, value: str, verdict: ClaimVerdict
-) -> None:
+def test_printed_totals_of_profiles(profile: str, value: str, verdict: ClaimVerdict) -> None:
     """1 rad: half a second of 4 rad/s² each way; with jerk 0.2 + sqrt(0.04 + 1) s.
 
     With half sines a ramp of π/2 · 0.2 s.
@@ -163,9 +156,7 @@ STRAIGHT = {"path": "straight"}
         ({}, "2.30", "inconsistent", "is 15.00 % longer"),
     ],
 )
-def test_how_the_joints_go_together_is_said(
-    path: dict[str, str], value: str, verdict: str, words: str
-) -> None:
+def test_how_joints_go_together(path: dict[str, str], value: str, verdict: str, words: str) -> None:
     found = judged("trapezoidal", value, TWO, **SLOW, **path)
     assert found.verdict == verdict
     assert words in found.message
@@ -275,9 +266,7 @@ def of_profile(value: Numbers, asked: dict[str, Any], own: dict[str, Any]) -> Fi
         (["9.9", "2.0"], None, "inconsistent"),
     ],
 )
-def test_a_peak_without_a_joint_is_the_largest_of_all(
-    value: Numbers, joint: str | None, verdict: str
-) -> None:
+def test_a_peak_of_no_joint_is_the_largest(value: Numbers, joint: str | None, verdict: str) -> None:
     found = of_profile(value, {} if joint is None else {"joint": joint}, {})
     assert found.verdict == verdict, found.message
 
@@ -306,9 +295,7 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
         (None, 2, "not checkable"),
     ],
 )
-def test_one_way_serves_the_totals_of_all_limits(
-    slower: str | None, velocity: int, verdict: str
-) -> None:
+def test_one_way_serves_all_limits(slower: str | None, velocity: int, verdict: str) -> None:
     """3 rad within 2 and 4 take 2 s, and within 2 rad/s and 3.636 rad/s² 2.05 s."""
     first = total("t", "2.00", profile="trapezoidal", problem="one", **CLAIM)
     other = entry("problems", id="two", limits={"velocity": velocity, "acceleration": "3.636"})

@@ -114,15 +114,12 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
     assert "(3 settings), medians are 3.3650 to 3.8850 s" in said
     assert "nearest to the printed total is 3.5150 s, with inertia = 0.884." in said
     assert "every one of these settings" not in said
-    assert " ".join(_typical(spreads, 4.0, 4.001)).endswith(
-        "every one of these settings is shorter."
-    )
-    assert " ".join(_typical(spreads, 3.0, 3.001)).endswith(
-        "every one of these settings is longer."
-    )
-    assert " ".join(_typical(spreads, 3.4, 3.401)).endswith(
-        "all runs are shorter or all are longer than the printed total."
-    )
+    for low, end in (
+        (4.0, "every one of these settings is shorter."),
+        (3.0, "every one of these settings is longer."),
+        (3.4, "all runs are shorter or all are longer than the printed total."),
+    ):
+        assert " ".join(_typical(spreads, low, low + 0.001)).endswith(end)
     assert not [*_typical({LISTED: spreads[LISTED]}, 3.5, 3.6)]
 
 
@@ -171,9 +168,7 @@ MADE_UP = Comparison(
 )  # fmt: skip
 
 
-def test_a_study_is_cited_with_every_number_and_decides_nothing(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_study_is_cited_in_numbers_and_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     made_up = comparisons._Results(format="x", command="y", comparisons=(MADE_UP,))
     monkeypatch.setattr(comparisons, "_results", lambda: made_up)
     study = Study(hurried(PUMA), seeds=2, certify_seconds=0)
@@ -214,5 +209,5 @@ def test_committed_results_are_about_claims_and_algorithms_that_exist(one: Compa
 
 
 def test_the_page_holds_the_committed_numbers() -> None:
-    page = (ROOT / "docs" / "measurements" / "comparisons.md").read_text("utf-8")
+    page = (ROOT / "docs/measurements/comparisons.md").read_text("utf-8")
     assert benchmark("comparison_results")["filled"](page, all_comparisons()) == page

@@ -126,9 +126,7 @@ def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_dig
         ),
     ],
 )
-def test_a_total_below_the_best_known_one_refutes_nothing(
-    swap: Swap, id_: str, claim: str, severity: Severity
-) -> None:
+def test_a_total_below_the_best_known(swap: Swap, id_: str, claim: str, severity: Severity) -> None:
     found = of(changed(PUMA, swap), id_, claim)
     assert {f.severity for f in found} == {severity}
     assert all(f.gap.highest < 0 for f in found)

@@ -25,9 +25,9 @@ from trajgap.problem import (
 )
 
 
-def with_ends(q: list[float], first: float, last: float, limits: Limits) -> Problem:
+def with_ends(q: list[float], start: float, last: float, limits: Limits) -> Problem:
     return Problem(
-        np.array(q)[:, None], limits, cubic_spline(len(q) - 1, ((1, first),), ((1, last),))
+        np.array(q)[:, None], limits, cubic_spline(len(q) - 1, ((1, start),), ((1, last),))
     )
 
 

@@ -40,11 +40,9 @@ def best() -> tuple[Fraction, ...]:
 
 
 def session(some: ProofCrew | None = None, seconds: float = np.inf) -> Session:
-    one = Session(
-        exact_problem(PROBLEM), Request(clock=RunClock(seconds), crew=some or ProofCrew())
-    )
-    one.durations = best()
-    return one
+    it = Session(exact_problem(PROBLEM), Request(clock=RunClock(seconds), crew=some or ProofCrew()))
+    it.durations = best()
+    return it
 
 
 def curves_of(stages: type[BoxStages], part: int = 8) -> search.Curves:

@@ -10,7 +10,7 @@ from trajgap.nlp import solve
 def test_the_page_shows_what_the_file_of_the_runs_holds() -> None:
     module = benchmark("quintic_bounds")
     found = module["rows"]()
-    page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
+    page = (ROOT / "docs/explanation/certificates-quintic.md").read_text("utf-8")
     for line in (*module["summary"](found), *module["each"](found)):
         assert line.startswith("|---") or f"\n{line}\n" in page
     problems = benchmark("quintic_instances")["instances"]()
@@ -37,23 +37,19 @@ def test_no_bound_of_the_file_exceeds_a_certified_upper_bound() -> None:
 
 @pytest.mark.slow
 def test_near_the_answer_the_linear_program_says_little_more_than_the_box() -> None:
-    reference = benchmark("quintic_mccormick")
+    written = benchmark("quintic_mccormick")
     problem = benchmark("quintic_instances")["instances"]()[0]
     best = solve(problem, seed=0).durations
     upper = float(best.sum())
     limits = np.stack([problem.limits.velocity, problem.limits.acceleration], axis=1)
-    whole = reference["Relaxation"](problem, range(6), upper)
-    single = [reference["Relaxation"](problem, [j], upper) for j in range(6)]
+    whole = written["Relaxation"](problem, range(6), upper)
+    single = [written["Relaxation"](problem, [j], upper) for j in range(6)]
     wide = np.full((6, 6, 4), np.inf)
     cost = np.zeros(whole.columns)
     cost[:7] = 1.0
-    box = reference["shrunk"](
-        reference["Box"](0.95 * best, 1.05 * best, -wide, wide), upper, limits
-    )
-    plain, _ = reference["least"](whole.program(box), cost)
-    tight = reference["nodal_tightened"](single, box, lambda: False)
-    better, _ = reference["least"](whole.program(tight), cost)
+    box = written["shrunk"](written["Box"](0.95 * best, 1.05 * best, -wide, wide), upper, limits)
+    plain, _ = written["least"](whole.program(box), cost)
+    tight = written["nodal_tightened"](single, box, lambda: False)
+    better, _ = written["least"](whole.program(tight), cost)
     sentence = f"{plain / upper:.3f} of the answer's, {better / upper:.3f} with"
-    assert sentence in (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text(
-        "utf-8"
-    )
+    assert sentence in (ROOT / "docs/explanation/certificates-quintic.md").read_text("utf-8")

@@ -62,7 +62,7 @@ def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float])
 
 @pytest.mark.slow
 def test_a_row_of_the_docs_is_proved_again() -> None:
-    page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
+    page = (ROOT / "docs/explanation/certificates-quintic.md").read_text("utf-8")
     problems = benchmark("quintic_instances")["instances"]()
     assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
     problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
@@ -72,9 +72,7 @@ def test_a_row_of_the_docs_is_proved_again() -> None:
     assert verify(json.loads(json.dumps(certificate(found)))).proves
 
 
-def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_falsified_limits_prove_too_much_and_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = certify(QUINTIC, gap=0.01)
     stated: Callable[[Any], Any] = module.stated_problem
 
