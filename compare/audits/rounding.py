@@ -35,8 +35,8 @@ from ...problem import (
 from ..documents import Rounding
 
 ROUNDING = 1e-9
-"""Relative margin of every comparison of computed numbers: far above what float64 loses in solved
-systems and long sums, and what `check` tolerates; far below any printed digit."""
+"""Relative margin of every comparison of computed numbers: far above what float64 loses in long
+sums, and what `check` tolerates; far below any printed digit."""
 FEW_ROUNDINGS = 1e-12
 """The same where a few sums, products and quotients lie between two numbers."""
 
@@ -61,8 +61,8 @@ Ends = tuple[Fraction | float, Fraction | float]
 
 
 def rounds_to(interval: tuple[float, float], time: float) -> bool:
-    """Whether a computed time lies in an interval, but for what a few floats round."""
-    return meet(interval, (time * (1.0 - FEW_ROUNDINGS), time * (1.0 + FEW_ROUNDINGS)))
+    """Whether a computed time lies in an interval, but for what floats round."""
+    return meet(interval, (time * (1.0 - ROUNDING), time * (1.0 + ROUNDING)))
 
 
 def meet(a: Ends, b: Ends) -> bool:
@@ -73,8 +73,7 @@ def meet(a: Ends, b: Ends) -> bool:
 def agreement(*tried: tuple[Agreement, Ends, Ends]) -> Agreement:
     """The first explanation under which what digits stand for meets what is computed.
 
-    Every rule that sets a printed number beside a computed one asks this: each explanation comes
-    with the ends of the printed number and of the computed one, the most charitable first.
+    Each comes with the ends of the printed number and of the computed one, most charitable first.
     """
     return next((kind for kind, own, computed in tried if meet(own, computed)), Agreement.OFF)
 

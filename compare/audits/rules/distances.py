@@ -29,7 +29,7 @@ from ..digit_ranges import below_certified
 from ..fixed_ratios import at_ratios, off_ratios, optimum_called, planned_apart
 from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS, OPTIMAL
-from ..rounding import FEW_ROUNDINGS, meet, rounds_to
+from ..rounding import ROUNDING, meet, rounds_to
 from ..stated import RowClaim, called, called_under, other_objective
 from ..stated_totals import contradicting_lows, rounded_up_low, total_excludes
 from ..study import Study, Total
@@ -212,7 +212,7 @@ def set_beside(distance: Gap) -> str:
     low, high = 100 * distance.lowest, 100 * distance.highest
     if distance.many_times:
         return f"is {shown_bound(1 + distance.lowest, 'lower', digits=4)} times"
-    if low <= 100 * FEW_ROUNDINGS and high >= -100 * FEW_ROUNDINGS:
+    if low <= 100 * ROUNDING and high >= -100 * ROUNDING:
         return "agrees within its rounding with"
     least, most = sorted((abs(low), abs(high)))
     share = f"{most:.3g}"

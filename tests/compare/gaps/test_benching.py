@@ -259,7 +259,7 @@ def test_bounds_and_first_positions_are_said() -> None:
     assert (search_box(plan.problem).upper >= EXACT).all()
     own, bounds, drawn = plan.notes
     assert own == "pso: 200 iterations, the algorithm's own, in 6,030 evaluations."
-    assert bounds.startswith("Some durations have no upper bound. Searched: 0.1 to ")
+    assert bounds.startswith("Some durations have no upper bound. Each is searched within 0.1 to ")
     assert drawn.startswith("pso: first positions drawn from 0.1 to ")
     assert plan_bench(TOY, "random", baselines=False).notes == ()
 

@@ -136,7 +136,7 @@ def test_columns_without_any_entry_are_left_out() -> None:
 
 def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
     page = (ROOT / "docs/reference/command-line.md").read_text("utf-8")
-    named = page[page.index("Words that do not apply are null alone.") :].split("\n- ")[0]
+    named = page[page.index("Keys that do not apply are null without a reason.") :].split("\n- ")[0]
     alone = set()
 
     def walk(value: object) -> None:

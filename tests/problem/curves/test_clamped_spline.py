@@ -312,7 +312,7 @@ PRINTED = {"parameters": "given", "time": "stretched"}
         ({"knot_vector": (*[0] * 6, 0.2, np.nan, 0.7, *[1] * 6)}, "knots must be finite"),
         (
             {"knot_vector": SIX[0]},
-            "but only 8 control points; 15 knots in all determine it, and 14",
+            "but only 8 control points; 15 knots determine it, but 14",
         ),
         ({"knot_vector": SIX[1]}, "under-determined, 9 conditions for 10 control points; 15 knots"),
         (
