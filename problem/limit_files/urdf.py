@@ -137,5 +137,5 @@ class _Reader:
         try:
             return read_float(limit[key])
         except TrajgapError as error:
-            fix = "run xacro first" if "$" in limit[key] else "fix it"
+            fix = "run xacro first" if "$" in limit[key] else "give one"
             raise self.fault(f"{self.joint}: {key}", f"{error}; {fix}") from None
