@@ -158,7 +158,7 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
         *most, last = shares
         return f"{', '.join(most)}{',' if len(most) > 1 else ''} and {last}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
-    parts = []
+    parts: list[str] = []
     for word, own in ordered:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
         mark = " (implausible)" if all(one in far for one in own) else ""

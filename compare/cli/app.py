@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from .options import ENDS, INTERRUPTED, command_group
+from .options import ENDS, INTERRUPTED, check_numbers, command_group
 
 COMMANDS = {
     "cases": "List the published cases.",
@@ -143,7 +143,6 @@ def _command() -> Any:
 
 def _run(arguments: Sequence[str]) -> int:
     from ...problem import TrajgapError, check_name
-    from .input import check_numbers
 
     command = _command()
     try:

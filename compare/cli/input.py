@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, read_float, to_si
+from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, to_si
 from ..audits import RoundingBox
 
 
@@ -20,21 +20,6 @@ class Selected:
     problem_id: str
     reading_id: str
     problem: Problem
-
-
-def check_numbers(arguments: Sequence[str]) -> None:
-    """Refuse numbers that parsers of options would take for infinite, without a word of it."""
-    # A number that may be too large for float64, alone or among others in an argument.
-    large = re.compile(
-        r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
-    )
-    for before, argument in zip(("", *arguments), arguments, strict=False):
-        for word in large.findall(argument):
-            option = before if before.startswith("--") else argument.partition("=")[0]
-            try:
-                read_float(word)
-            except TrajgapError as error:
-                raise CaseError(option, "", f"{error}; give less") from None
 
 
 @contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -219,3 +221,20 @@ Family = Annotated[
     ),
 ]
 Degree = Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")]
+
+
+def check_numbers(arguments: Sequence[str]) -> None:
+    """Refuse numbers that parsers of options would take for infinite, without a word of it."""
+    # A number that may be too large for float64, alone or among others in an argument.
+    large = re.compile(
+        r"(?<![\w./])(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)[eE]\+?[0-9]+|[0-9]{300,})(?![\w./])"
+    )
+    for before, argument in zip(("", *arguments), arguments, strict=False):
+        for word in large.findall(argument):
+            from ...problem import CaseError, TrajgapError, read_float  # few commands need them
+
+            option = before if before.startswith("--") else argument.partition("=")[0]
+            try:
+                read_float(word)
+            except TrajgapError as error:
+                raise CaseError(option, "", f"{error}; give less") from None

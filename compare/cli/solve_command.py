@@ -18,6 +18,7 @@ from ...nlp import (
     stopping_after,
     with_other_route,
 )
+from ...nlp.proofs import KeptNearby
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, CaseError, Coupling, Problem, fit, shown_bound
 from ...verify import Subject
@@ -217,7 +218,7 @@ def _solve_case(
             for one in selected:
                 step(in_words(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
-                    result, found = _solved(case, one, starts, seed, prove, retimings)
+                    result, found = _solved(case, one, starts, seed, prove, limit, retimings)
                 results.append(result)
                 if asked is not None and written is None:
                     text, written = write_motion(one, found, asked)
@@ -233,7 +234,13 @@ _Retimings = dict[tuple[object, ...], Retiming]
 
 
 def _solved(
-    case: Case, one: Selected, starts: int, seed: int, prove: float, retimings: _Retimings
+    case: Case,
+    one: Selected,
+    starts: int,
+    seed: int,
+    prove: float,
+    limit: float | None,
+    retimings: _Retimings,
 ) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
     statement = case.statement(one.problem_id, one.reading_id)
@@ -248,7 +255,9 @@ def _solved(
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(Pair(one.problem_id, one.reading_id))
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
-        apart = solve_per_joint(one.problem, slacks=slacks, solver=solver)
+        # What a time limit cuts short is not kept.
+        search = KeptNearby(limit is None)
+        apart = solve_per_joint(one.problem, slacks=slacks, solver=solver, search=search)
         together = solver(one.problem)
         retimed = [_retimed(s, retimings) for s in apart.joints]
         return solve_result(*ids, apart, retimed, together), together
