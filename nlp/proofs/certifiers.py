@@ -42,6 +42,8 @@ question of any curve, which the kinds behind know nothing of: they stand before
 _FEW = 7
 """Segments up to which boxes of durations may close in a second: of the six cubic splines of six
 and seven in the suite two do, and the kind of their own takes one to ten seconds."""
+_MANY = 12
+"""Segments beyond which a single box takes longer than a second: 5 s at 30."""
 MINUTE = 6
 """Times the boxes that an audit allows, which take ten seconds: a user who asks for a proof waits
 for a minute."""
@@ -102,9 +104,11 @@ def prompt(problem: ExactProblem) -> Certifier | None:
     able = [
         c for c in _able(problem, Subject.DECLARED) if not c.prepares and c.missing(problem) is None
     ]
-    if not able or able[0].instant or problem.segments > _FEW:
+    if not able or able[0].instant:
         return able[0] if able else None
-    return able[-1]
+    if problem.segments > _MANY:
+        return None
+    return able[0] if problem.segments > _FEW else able[-1]
 
 
 def allowance(problem: ExactProblem) -> int:
