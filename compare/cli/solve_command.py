@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -151,9 +152,13 @@ def solve(
         if samples is None and lone:
             raise typer.BadParameter(f"{lone[0]} needs --samples")
         asked = None if samples is None else AskedSamples.of(samples, rate, form, retimed)
-        return _solve_case(
-            read, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
-        )
+        # What a time limit cuts short is not kept.
+        search = KeptNearby(seconds is None and not no_cache)
+
+        def solved(one: Selected, retimings: _Retimings) -> tuple[SolveResult, Solution]:
+            return _solved(read, one, starts, seed, prove, search, retimings)
+
+        return _solve_case(read, problem, reading, coupling, solved, seconds, as_json, out, asked)
     if samples is not None or lone:
         raise typer.BadParameter("--samples needs a solution; leave --certify out")
     return certify_case(
@@ -191,9 +196,7 @@ def _solve_case(
     problem: str | None,
     reading: str | None,
     coupling: str | None,
-    starts: int,
-    seed: int,
-    prove: float,
+    solved: Callable[[Selected, _Retimings], tuple[SolveResult, Solution]],
     limit: float | None,
     as_json: bool,
     out: Path | None,
@@ -218,7 +221,7 @@ def _solve_case(
             for one in selected:
                 step(in_words(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
-                    result, found = _solved(case, one, starts, seed, prove, limit, retimings)
+                    result, found = solved(one, retimings)
                 results.append(result)
                 if asked is not None and written is None:
                     text, written = write_motion(one, found, asked)
@@ -239,7 +242,7 @@ def _solved(
     starts: int,
     seed: int,
     prove: float,
-    limit: float | None,
+    search: KeptNearby,
     retimings: _Retimings,
 ) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
@@ -255,8 +258,6 @@ def _solved(
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(Pair(one.problem_id, one.reading_id))
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
-        # What a time limit cuts short is not kept.
-        search = KeptNearby(limit is None)
         apart = solve_per_joint(one.problem, slacks=slacks, solver=solver, search=search)
         together = solver(one.problem)
         retimed = [_retimed(s, retimings) for s in apart.joints]
