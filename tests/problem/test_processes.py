@@ -141,11 +141,11 @@ def test_kept_processes_work_again_and_end() -> None:
         # One that was killed while it waited costs no try of the work that it would have got.
         os.kill(min(before), signal.SIGKILL)
         assert list(in_processes(partial(divmod, 7), [2, 3], 2)) == [(3, 1), (2, 1)]
-        # Work that is given up ends its process: nobody waits for the answer.
+        # Work that is given up ends its process; another is left unless one did both pieces.
         results = in_processes(time.sleep, [0.0, 600.0], 2)
         next(results)
         results.close()
-        assert len(children()) == 1
+        assert len(children()) <= 1
         # What is left behind in it ends later.
         late = in_processes(time.sleep, [0.0, 1.0], 2)
         next(late)
