@@ -103,7 +103,7 @@ def test_zero_is_no_duration() -> None:
 @pytest.mark.parametrize(
     ("penalty", "said"),
     [
-        *((bad, r"must be positive, got .*inf is allowed") for bad in (0.0, -1.0, np.nan)),
+        *((bad, r"penalty: must be positive, got .*inf is allowed") for bad in (0.0, -1.0, np.nan)),
         (7.5, r"penalty: 7.5 does not exceed .* of 7.5 s; raise it"),
     ],
 )
@@ -120,6 +120,7 @@ def test_a_penalty_is_above_every_admissible_total(judge: type, penalty: float, 
 @pytest.mark.parametrize(
     ("values", "said"),
     [
+        ([1.0], r"expected 2 values .* got shape \(1,\)"),
         ([[1.0], [2.0]], r"expected 2 values .* got shape \(2, 1\)"),
         ([1.0, np.nan], "returned NaN; return inf for infeasible positions"),
     ],

@@ -323,6 +323,7 @@ def test_a_run_that_was_left_is_judged_again() -> None:
         ("another size", {"position": own.position[:-1]}),
         ("does not end at", {"trace": own.trace[::-1]}),
         ("does not end at", {"position": own.position * (1 + 1e-15)}),
+        ("does not end at", {"position": own.position * 0.5}),
         ("does not end at", {"trace": np.append(own.trace[:-1], np.nextafter(own.trace[-1], 0))}),
     ):
         with pytest.raises(TrajgapError, match=said):

@@ -1,8 +1,9 @@
 """Made-up case files, a line for each claim: what tests of single rules are tried on."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import pytest
 from support.toml_text import Bare, block
 
 QUINTIC = {"family": "rest-to-rest", "degree": 5}
@@ -10,6 +11,11 @@ QUINTIC = {"family": "rest-to-rest", "degree": 5}
 CUBIC = {"family": "rest-to-rest", "degree": 3}
 """Peaks at 3 d/(2 h)."""
 Numbers = str | Sequence[object]
+
+
+def slow(seeds: Iterable[int]) -> list[Any]:
+    """Seeds that the quick suite leaves out."""
+    return [pytest.param(seed, marks=pytest.mark.slow) for seed in seeds]
 
 
 def _listed(given: Numbers) -> list[object]:

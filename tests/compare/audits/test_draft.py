@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 import pytest
-from support.made_up import algorithms, claim, gain, paper, row, sentence, total
+from support.made_up import algorithms, claim, gain, paper, row, sentence, slow, total
 from support.papers.spoiled import spoiled
 from support.studies import EVERY, audited_alone
 from trajgap.compare.audits import CaseAudit, audit
@@ -149,13 +149,8 @@ def test_all_advice_together_contradicts_nothing() -> None:
     assert {j.verdict for j in second.judgements if j.claim != "rival"} == {"supported"}
 
 
-QUICK = (2, 24, 25)
-"""Drafts whose two audits take some seconds."""
-
-
-@pytest.mark.parametrize(
-    "seed", [k if k in QUICK else pytest.param(k, marks=pytest.mark.slow) for k in range(30)]
-)
+# Of the first three drafts both audits take some seconds.
+@pytest.mark.parametrize("seed", [2, 24, 25, *slow({*range(30)} - {2, 24, 25})])
 def test_after_all_advice_the_next_audit_finds_nothing(seed: int) -> None:
     draft, faults = spoiled(seed)
     first, second = applied(draft.text())

@@ -256,7 +256,8 @@ def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
     found = summary_of(one)
     assert found.outcomes == found.fits == found.nearest == ()
     (said,) = answers(found)
-    assert said.startswith("Limits, optimum and gap cannot be computed under any of the 14")
+    words = "Limits, optimum and gap cannot be computed under any of the 14 readings"
+    assert said.startswith(words)
     assert "no way-points are printed" in said
     page = markdown(Page("z1", "t", (side_by_side(one),)))
     assert all(f"| {one.case.labels[reading.id]} |" in page for reading in one.case.readings)

@@ -4,13 +4,13 @@ The rates, over many more, are those of docs/measurements/auditor-errors.md.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 import numpy as np
 import pytest
-from _pytest.mark import ParameterSet
 from support.benchmarks import loaded
 from support.findings import audited_text
+from support.made_up import slow
 from support.papers.apart import apart, moving
 from support.papers.claims import draw
 from support.papers.motions import FAMILIES
@@ -22,11 +22,6 @@ from trajgap.compare.audits import CaseAudit
 from trajgap.problem import extrema, fit, parse_case
 
 AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-
-
-def slow(seeds: Iterable[int]) -> list[ParameterSet]:
-    """Seeds that the quick suite leaves out."""
-    return [pytest.param(seed, marks=pytest.mark.slow) for seed in seeds]
 
 
 def contradicted(one: CaseAudit) -> dict[str, str]:

@@ -243,10 +243,11 @@ def test_what_goes_on_exports(run: Run, folder: Path, monkeypatch: pytest.Monkey
     exports = ("--export", "a b.csv", "--export", "few.ioh")
     code, out, err = run("study", "few.toml", *exports, "--workers", "1")
     assert (code, out) == (130, "")
-    assert "`trajgap study few.toml --export 'a b.csv' --export few.ioh` continues" in err
+    words = "`trajgap study few.toml --export 'a b.csv' --export few.ioh` continues from there"
+    assert words in err
     assert not (folder / "few.ioh").exists()
     _, _, err = run("study", "few.toml", "--store", "kept.sqlite", "--workers", "1")
-    assert "`trajgap study few.toml --store kept.sqlite` continues" in err
+    assert "`trajgap study few.toml --store kept.sqlite` continues from there" in err
 
 
 @pytest.mark.slow

@@ -190,7 +190,8 @@ def test_a_problem_that_the_objective_cannot_judge_is_refused(tmp_path: Path) ->
     (tmp_path / "mine.toml").write_text(
         case.replace('{ family = "3-5-3" }', free) + "durations = { upper = 9000 }\n"
     )
-    with pytest.raises(CaseError, match=r"problems\[0\]: main, plain: .* 5-5-5 .* leaves 4"):
+    words = r"problems\[0\]: main, plain: interpolant 5-5-5 .* leaves 4"
+    with pytest.raises(CaseError, match=words):
         load_study(path)
     # A position limit is judged.
     held = case.replace("[limits]", "[limits]\nposition_upper = 3")

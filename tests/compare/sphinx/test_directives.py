@@ -55,7 +55,8 @@ def test_words_are_read_in_their_order(option: str, words: list[str]) -> None:
     ],
 )
 def test_a_word_that_no_claim_can_have_is_an_error(option: str, wrong: str) -> None:
-    with pytest.raises(TrajgapError, match=f":verdict: '{wrong}' is no verdict on") as caught:
+    words = f":verdict: '{wrong}' is no verdict on a claim"
+    with pytest.raises(TrajgapError, match=words) as caught:
         wanted_words(option)
     assert all(str(word) in str(caught.value) for word in ClaimVerdict)
 

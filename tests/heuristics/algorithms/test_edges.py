@@ -39,7 +39,8 @@ def test_negative_totals_have_a_fitness_by_complement_alone() -> None:
     negative = np.array([-1.0, 2.0])
     found = fitness_values(negative, np.inf, FitnessRule.COMPLEMENT)
     np.testing.assert_array_equal(found, [3.0, 0.0])
-    with pytest.raises(TrajgapError, match=r"^fitness_rule: 'inverse' needs positive .* 'comp"):
+    words = r"^fitness_rule: 'inverse' needs positive .* take 'comp"
+    with pytest.raises(TrajgapError, match=words):
         fitness_values(negative, np.inf, FitnessRule.INVERSE)
 
 

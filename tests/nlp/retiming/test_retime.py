@@ -202,7 +202,6 @@ def test_each_joint_on_its_own_path() -> None:
     limits = Limits(np.linspace(5.0, 6.0, 6), np.linspace(8.0, 7.0, 6))
     alone = [replace(MOTION, scaled=MOTION.scaled[:, :, j : j + 1]) for j in range(6)]
     each = [retime(one, limits.joint(j)) for j, one in enumerate(alone)]
-    assert len(each) == 6
     for j, found in enumerate(each):
         turning = [e for e in extrema(MOTION, j, 0) if abs(MOTION(e.time, 1)[j]) < 1e-9]
         values = [turning[0].value]

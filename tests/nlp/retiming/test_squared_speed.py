@@ -86,10 +86,11 @@ def test_times_scale_with_the_limits_and_with_nothing_else() -> None:
         (along(natural(POINTS[:, ::-1], SHARES), Limits([1.3, 0.8], [4.0, 2.5])), 1.0),
         (along(natural(POINTS[::-1], SHARES[::-1]), LIMITS), 1.0),
         (along(natural(5.0 - POINTS, SHARES), LIMITS), 1.0),
-        (along(still, Limits([0.8, 1.3, 0.0], [2.5, 4.0, 0.0])), 1.0),
     ):
         assert factor * other.lower == pytest.approx(first.lower, rel=1e-6)
         assert factor * other.upper == pytest.approx(first.upper, rel=1e-6)
+    beside = along(still, Limits([0.8, 1.3, 0.0], [2.5, 4.0, 0.0]))
+    assert [beside.lower, beside.upper] == pytest.approx([first.lower, first.upper], rel=1e-9)
 
 
 def test_looser_limits_allow_less_time_and_tighter_ones_need_more() -> None:

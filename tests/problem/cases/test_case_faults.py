@@ -50,7 +50,7 @@ def test_what_is_too_long_is_refused(old, new, line):
 def test_several_faults_are_named_and_spelling_comes_first():
     text = BASE.replace('name = "arm"\n', "").replace('kind = "pso"', 'kinds = "pso"')
     with pytest.raises(
-        CaseError, match=r"kinds: unknown .*; also robot.name: is missing"
+        CaseError, match=r"kinds: unknown key; .*; also robot.name: is missing"
     ) as caught:
         parse_case(text, "base.toml")
     assert [field for field, _ in caught.value.faults] == ["algorithms[0].kinds", "robot.name"]

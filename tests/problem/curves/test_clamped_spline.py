@@ -258,7 +258,8 @@ def test_chords_need_waypoints_that_differ() -> None:
     problem, h = clamped((5, "averaged-continued", "chord", "timed"), 13)
     still = problem.waypoints.copy()
     still[4] = still[3]
-    with pytest.raises(TrajgapError, match="waypoints: 3 and 4 coincide, so chord parameters"):
+    words = "waypoints: 3 and 4 coincide, so chord parameters cannot"
+    with pytest.raises(TrajgapError, match=words):
         fit(problem.curve, still, h)
 
 

@@ -189,7 +189,8 @@ def test_singular_is_said(banded: bool, monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
         monkeypatch.setattr(Factors, "solve", lambda self, right, transposed: np.nan * right)
     monkeypatch.setattr(np.linalg, "solve", Mock(side_effect=np.linalg.LinAlgError))
-    with pytest.raises(TrajgapError, match=r"3-5-3 polynomials: singular for durations \[1. 1. 1"):
+    words = r"3-5-3 polynomials: singular for durations \[1. 1. 1.\]"
+    with pytest.raises(TrajgapError, match=words):
         fit(three_five_three(), waypoints(4), [1.0, 1.0, 1.0])
 
 

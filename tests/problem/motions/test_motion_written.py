@@ -315,5 +315,6 @@ def test_messages_without_one_trajectory_are_refused():
     with pytest.raises(TrajgapError, match="the message contains 2 trajectories; give one"):
         as_motion({"trajectory": [plain, plain]})
     lost = SimpleNamespace(joint_names=["a"], points=[SimpleNamespace(positions=[0.0])] * 2)
-    with pytest.raises(TrajgapError, match=r"JointTrajectory: points\[0\].time_from_start: is mis"):
+    words = r"JointTrajectory: points\[0\].time_from_start: is missing"
+    with pytest.raises(TrajgapError, match=words):
         as_motion(lost)

@@ -126,9 +126,8 @@ def test_the_card_speaks_of_the_row_and_of_nothing_else() -> None:
     assert [each.claim for each in cause.consequences] == ["kept"]
     kept = audited_text(made_up(blends="0.50")).card
     assert kept.limits == "The printed durations keep the limits."
-    assert audited_text(made_up()).card.limits.endswith(
-        "belong to another curve (linear segments with parabolic blends)."
-    )
+    said = audited_text(made_up()).card.limits
+    assert said.endswith("belong to another curve (linear segments with parabolic blends).")
 
 
 @pytest.mark.parametrize(

@@ -263,9 +263,8 @@ def test_the_longest_durations_may_be_rounded_up(printed: str, verdict: str) -> 
 @pytest.mark.parametrize("fast", ["0", "0.0", 0])
 def test_nothing_is_a_share_of_a_total_of_nothing(fast: Any, keys: dict[str, str]) -> None:
     for percent, verdict in (("100", "supported"), ("40", "refuted")):
-        nothing = keys == {"base": "faster"}
-        found = judged("3", fast, percent=percent, **keys)
-        assert found.verdict == ("not checkable" if nothing else verdict)
+        word = "not checkable" if keys == {"base": "faster"} else verdict
+        assert judged("3", fast, percent=percent, **keys).verdict == word
 
 
 def test_an_interval_whose_ends_print_alike_is_one_number() -> None:
