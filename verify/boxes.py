@@ -25,7 +25,7 @@ _NUMBERS = 2_000_000
 """In the largest array of a batch: 16 MB, beyond which numpy is no faster."""
 _LEAVES = 512
 """In a batch at most: from there on numpy's own work outweighs the calls."""
-np.empty(2 * _NUMBERS)  # the C library keeps what arrays up to the largest one freed took: 64 MB
+np.empty(2 * _NUMBERS)  # freed at once: glibc then reuses such memory; page faults took a quarter
 SLACK = 1e-12
 """Of the sides of a box: far more than the rounding of the sums that shrink it."""
 

@@ -105,7 +105,7 @@ def _plain(
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if head.kind == NO_PROFILE:
-        said = f"{capital(at_place(where))}, no profile has the printed plateau."
+        said = f"{capital(at_place(where))}, no profile was found with the printed plateau."
         return (said, *own[1:]), False
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"

@@ -136,7 +136,7 @@ def _kept(study: Study, own: Sequence[RowClaim], whose: str) -> str:
     row_named = "" if len(own) == 1 else f" in {place(row)}"
     return (
         f"As printed{row_named}, the {worst.quantity} of joint {worst.joint} exceeds its limit by "
-        f"{share:.1f} %; some durations that {how} the printed digits keep every limit"
+        f"{share:.1f} %; some values that {how} the printed digits keep every limit"
     )
 
 

@@ -152,25 +152,28 @@ def _beside_profiles(study: Study, words: Mapping[str, Judgement]) -> str:
     if not timed:
         return ""
     profiles = [*dict.fromkeys(str(c.profile) for c in timed)]
-    agreeing = _agreeing([words[c.id].verdict for c in timed], profiles)
+    # Without way-points, times are judged along one way, which is not printed.
+    way = "" if study.has_problems else ", for one common distance"
+    agreeing = _agreeing([words[c.id].verdict for c in timed], profiles, way)
     return agreeing + (_above_shortest(study, timed) if study.has_problems else "")
 
 
-def _agreeing(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) -> str:
+def _agreeing(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str], way: str = "") -> str:
     """How many times agree with their profiles; what is open accuses none."""
     agree = verdicts.count(ClaimVerdict.SUPPORTED)
     differ = verdicts.count(ClaimVerdict.INCONSISTENT) + verdicts.count(ClaimVerdict.REFUTED)
     if len(verdicts) == 1:
         own = profile_called(profiles)
         if not agree and not differ:
-            return f"It is open whether the printed time agrees with the {own}."
-        return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
+            return f"It is open whether the printed time agrees with the {own}{way}."
+        return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}{way}."
     which = f"{agree} of {len(verdicts)}"
     if agree == len(verdicts):
         which = "Both" if agree == FEW else f"All {agree}"
     left = len(verdicts) - agree - differ
     note = f"; {left} {'is' if left == 1 else 'are'} open" if left else ""
-    return f"{which} printed times agree with their {profile_called(profiles, 'profiles')}{note}."
+    own = profile_called(profiles, "profiles")
+    return f"{which} printed times agree with their {own}{way}{note}."
 
 
 @dataclass(frozen=True)

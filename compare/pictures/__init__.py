@@ -1,4 +1,4 @@
-"""Pictures, one a file."""
+"""Pictures of audits, benches, motions and arms."""
 
 import lazy_loader
 

@@ -41,8 +41,8 @@ class Peak:
     joint: str | None
     """Joint label; None for a segment duration."""
     quantity: str
-    """"position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations "
-    "define none."""
+    """"position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations
+    define none."""
     segment: int
     """Segment, from 0."""
     time: float | None
