@@ -67,9 +67,12 @@ def raised(number: Printed) -> Interval:
     return Interval(number.fraction - number.unit, number.fraction)
 
 
-def _sum(parts: Iterable[tuple[Interval, Fraction]]) -> Interval:
-    lower, upper = zip(*((p.lower * share, p.upper * share) for p, share in parts), strict=True)
-    return Interval(sum(lower, Fraction(0)), sum(upper, Fraction(0)))
+def summed(parts: Iterable[tuple[Interval, Fraction]]) -> Interval:
+    """The sum of shares of intervals."""
+    lower = upper = Fraction(0)
+    for part, share in parts:
+        lower, upper = lower + part.lower * share, upper + part.upper * share
+    return Interval(lower, upper)
 
 
 def shown(x: Fraction | float, places: int = 6) -> str:
@@ -209,14 +212,14 @@ def _sum_beside(
         "TG101",
         claim,
         total,
-        _sum((d.interval, share) for d, share in parts),
-        _sum((d.truncated, share) for d, share in parts),
+        summed((d.interval, share) for d, share in parts),
+        summed((d.truncated, share) for d, share in parts),
         what,
         study.time_unit,
         f"{SUM} {claim.id}",
         shown(plain) if halves else str(sum(d.decimal for d in claim.durations)),
         coarser=total.unit > max(d.unit for d, _ in parts),
-        raised_parts=_sum((raised(d), share) for d, share in parts),
+        raised_parts=summed((raised(d), share) for d, share in parts),
     )
 
 

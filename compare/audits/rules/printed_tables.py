@@ -18,10 +18,10 @@ from ....problem.cases import (
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
-from ..rounding import hull, meet
+from ..rounding import either, hull, meet
 from ..stated import RowClaim, printed_total
 from ..study import Study
-from .printed_digits import end_blends, raised
+from .printed_digits import end_blends, raised, summed
 from .rule_group import Explained, finding, rule_group
 
 _Timed = RowClaim | TotalTimeClaim
@@ -239,39 +239,29 @@ def total_allowed(study: Study, claim: AnyClaim) -> Interval:
     """What the digits of a total allow, rounded or cut off, in the unit of time of the file.
 
     A printed total may be the sum of printed digits, so what its parts allow is allowed too.
-
     """
     printed = printed_total(claim)
     parts = study.case.printed_durations(claim)
-    zero = Fraction(0)
-    halves = sum((hull(p).upper for p in end_blends(study, claim) or ()), zero) / 2
-    summed = Interval(
-        sum((hull(p).lower for p in parts), zero),
-        sum((hull(p).upper for p in parts), zero) + halves,
-    )
+    whole = summed((hull(p), Fraction(1)) for p in parts)
+    halves = summed((hull(p), Fraction(1, 2)) for p in end_blends(study, claim) or ())
+    whole = Interval(whole.lower, whole.upper + halves.upper)
     if printed is None:
-        return summed
+        return whole
     own = hull(printed)
-    if not parts or not meet(own, summed):
-        return own
-    return Interval(min(own.lower, summed.lower), max(own.upper, summed.upper))
+    return either(own, whole) if parts and meet(own, whole) else own
 
 
-def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
-    """A total as printed or as the sum of its parts, and what its digits allow."""
-    allowed = total_allowed(study, claim)
-    summed = "" if printed_total(claim) is not None else " (sum of its durations)"
-    return f"{study.total_digits(claim)}{summed}", allowed
+def _total_shown(study: Study, claim: AnyClaim) -> str:
+    """A total as printed or as the sum of its parts."""
+    note = "" if printed_total(claim) is not None else " (sum of its durations)"
+    return f"{study.total_digits(claim)}{note}"
 
 
 def _agrees(study: Study, value: Printed, other: AnyClaim) -> bool:
     """Whether a total is that of another claim: rounded or cut off, or the coarser rounded up."""
     allowed, printed = total_allowed(study, other), printed_total(other)
     parts = study.case.printed_durations(other) if printed is None else (printed,)
-    up = Interval(
-        sum((raised(p).lower for p in parts), Fraction(0)),
-        sum((raised(p).upper for p in parts), Fraction(0)),
-    )
+    up = summed((raised(p), Fraction(1)) for p in parts)
     unit = max(p.unit for p in parts)
     return (
         meet(hull(value), allowed)
@@ -301,7 +291,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
                 )
             continue
         other = others[0]
-        shown, _ = _total_shown(study, other)
+        shown = _total_shown(study, other)
         printed = f"{claim.value} {study.time_unit}"
         whose = "" if claim.algorithm is None else f" ({study.called(claim.algorithm)})"
         message = f"{claim.where} prints {printed} and {other.where} prints {shown} for the same "
@@ -311,7 +301,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
         alone = isinstance(other, TotalTimeClaim) or weight is None
         if not agreeing and (len(others) > 1 or alone):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "none of them"
-            places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in others)
+            places = "; ".join(f"{c.where}: {_total_shown(study, c)}" for c in others)
             message = (
                 f"{claim.where} prints {printed}, which differs from all totals printed elsewhere "
                 f"({places}); the text does not say that it is one of them."
