@@ -25,7 +25,6 @@ from ..documents import (
     Advice,
     AuditDocument,
     AuditedCase,
-    Basis,
     Cause,
     ClaimVerdict,
     Edit,
@@ -276,7 +275,7 @@ def audit_case(study: Study) -> CaseAudit:
     """
     groups = [group for group in GROUPS if study.has_problems or group.without_waypoints]
     found = [finding for group in groups for finding in _judged(group.judge, study)]
-    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED or f not in found[:at]]
+    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -299,7 +298,7 @@ def _judged(group: _Group, study: Study) -> list[Finding]:
         raise
     except TrajgapError as error:
         found = [f for one in study.claims for f in _alone(group, study, one)]
-        said = any(f.rule == NOT_COMPUTED for f in found)
+        said = any(f.rule == NOT_COMPUTED.id for f in found)
         return found if said else [*found, _not_computed(error)]
 
 
@@ -324,15 +323,8 @@ def _under(group: _Group, row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
 
 
 def _not_computed(error: TrajgapError, row: PrintedRow[AnyClaim] | None = None) -> Finding:
-    return Finding(
-        rule=NOT_COMPUTED,
-        basis=Basis.CHECK,
-        claim=None if row is None else row.claim.id,
-        problem=None if row is None else row.problem,
-        reading=None if row is None else row.reading,
-        kind="not computed",
-        sentences=(f"Not computed: {str(error).removesuffix('.')}.",),
-    )
+    why = f"Not computed: {str(error).removesuffix('.')}."
+    return NOT_COMPUTED.finding(row, "not computed", why)
 
 
 def _weight(finding: Finding) -> tuple[int, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from ...problem import (
     shown_unit,
 )
 from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
-from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
+from ..documents import UNITS, Keeping, Rounding, noted, si_unit
 from .rounding import BOXES, RoundingBox, RoundingVerdict, excludes_total, judge_rounding
 from .stated import RowClaim, in_words, in_words_among, own_total, place
 from .study import Pair, Study, Total
@@ -69,11 +69,6 @@ class PrintedRow(Generic[C]):
     def statement(self) -> Statement:
         """The problem under the reading, in printed digits."""
         return self.study.case.statement(*self.pair)
-
-    def finding(self, rule: str, kind: str, *sentences: str, **facts: Any) -> Finding:
-        """A finding of a rule on the claim under this problem and reading."""
-        about = {"claim": self.claim.id, "problem": self.problem, "reading": self.reading}
-        return Finding(rule=rule, kind=kind, sentences=sentences, **about | facts)
 
     def once(self, what: str, compute: Callable[[], T], *more: object) -> T:
         """A value that the study keeps for this row under a name, computed on first use."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -24,22 +23,25 @@ _SAMPLED = (
 """What is added if way-points sample a path."""
 
 
-@rule_group(
-    TG305=Explained(
-        "A printed total along a fixed path beside the shortest time on it",
-        "Is the printed total the shortest along a path, from rest to rest within limits of "
-        "velocity and acceleration? A convex program in the square of the path speed gives a "
-        "motion, which is checked everywhere; sweeps from both ends give a bound that no motion "
-        "undercuts.",
-        "Supported if it lies between them, inconsistent if it lies below both, else not "
-        "checkable, because a motion may take longer. If it is called optimal, a longer total is "
-        "inconsistent too. A difference of up to 1 % decides nothing, because a planner's grid "
-        "may explain it. Both bounds hold however the digits were rounded, and where points "
-        "sample the path, for all paths that differ from their spline by at most twice as much as "
-        "a spline of another degree does.",
-        "A lap is called time-optimal at 1.7000 s, and a motion along it takes 1.6474 s.",
-    ),
+TG305 = Explained(
+    "TG305",
+    "A printed total along a fixed path beside the shortest time on it",
+    "Is the printed total the shortest along a path, from rest to rest within limits of "
+    "velocity and acceleration? A convex program in the square of the path speed gives a "
+    "motion, which is checked everywhere; sweeps from both ends give a bound that no motion "
+    "undercuts.",
+    "Supported if it lies between them, inconsistent if it lies below both, else not "
+    "checkable, because a motion may take longer. If it is called optimal, a longer total is "
+    "inconsistent too. A difference of up to 1 % decides nothing, because a planner's grid "
+    "may explain it. Both bounds hold however the digits were rounded, and where points "
+    "sample the path, for all paths that differ from their spline by at most twice as much as "
+    "a spline of another degree does.",
+    "A lap is called time-optimal at 1.7000 s, and a motion along it takes 1.6474 s.",
+    basis=Basis.ENCLOSURE,
 )
+
+
+@rule_group(TG305)
 def judge_along_paths(study: Study) -> Iterator[Finding]:
     """Findings of TG305."""
     for claim in study.claims:
@@ -56,10 +58,12 @@ def judge_along_paths(study: Study) -> Iterator[Finding]:
 
 def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Finding:
     claim = row.claim
+    sampled = claim.path == "sampled"
+    known = {"claim": about, "basis": Basis.COMPUTED if sampled else TG305.basis}
     best = path_time(row)
     if best.why is not None:
         said = f"The shortest time along the path is not computed: {best.why}."
-        return _found(row, about, ClaimVerdict.NOT_CHECKABLE, "not computed", said)
+        return TG305.finding(row, "not computed", said, **known)
     away = outside(row)
     far = f"{100 * abs(away):.2f} %"
     verdict, kind, said = (
@@ -85,14 +89,6 @@ def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Findi
         f"Along the path, from rest to rest, no motion within the limits takes less than "
         f"{best.lower:.6g} s, and {upper}. The printed {printed} {said}."
     )
-    computed = f"{best.lower:.6g} to {best.upper:.6g} s"
-    notes = (_SAMPLED,) if claim.path == "sampled" else ()
-    return _found(row, about, verdict, kind, said, *notes, printed=printed, computed=computed)
-
-
-def _found(
-    row: PrintedRow[Any], about: str, verdict: ClaimVerdict, kind: str, *said: str, **facts: Any
-) -> Finding:
-    basis = Basis.COMPUTED if row.claim.path == "sampled" else Basis.ENCLOSURE
-    given = {"verdict": verdict, "basis": basis, "claim": about}
-    return row.finding("TG305", kind, *said, **given | facts)
+    known |= {"printed": printed, "computed": f"{best.lower:.6g} to {best.upper:.6g} s"}
+    notes = (_SAMPLED,) if sampled else ()
+    return TG305.finding(row, kind, said, *notes, verdict=verdict, **known)

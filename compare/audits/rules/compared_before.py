@@ -13,7 +13,7 @@ from ....problem import Case
 from ...documents import Basis, Finding, noted
 from ..amounts import percent
 from ..study import Study
-from .rule_group import INFORMS, Explained, finding, rule_group
+from .rule_group import INFORMS, Explained, rule_group
 
 _RESULTS = "comparisons.json"
 """The committed results: written by benchmarks/comparison_results.py, never by hand."""
@@ -134,19 +134,22 @@ _TOGETHER = "all joints together"
 """Where a study names no other way of searching: a card calls such an optimum so."""
 
 
-@rule_group(
-    TG405=Explained(
-        "A comparison of two algorithms, repeated in a committed study",
-        "Does a larger study confirm the comparison of two algorithms: many seeds, every handling "
-        "of "
-        "limits, settings spread over what is open, each improvement removed?",
-        INFORMS + " The results are committed with the command that makes them.",
-        "B is at least 10 % shorter than A in 2 % of the pairs of runs, and typically so for 3 of "
-        ""
-        "256 pairs of settings.",
-    ),
-    without_waypoints=True,
+TG405 = Explained(
+    "TG405",
+    "A comparison of two algorithms, repeated in a committed study",
+    "Does a larger study confirm the comparison of two algorithms: many seeds, every handling "
+    "of "
+    "limits, settings spread over what is open, each improvement removed?",
+    INFORMS + " The results are committed with the command that makes them.",
+    "B is at least 10 % shorter than A in 2 % of the pairs of runs, and typically so for 3 of "
+    ""
+    "256 pairs of settings.",
+    basis=Basis.REPLAY,
+    decides=False,
 )
+
+
+@rule_group(TG405, without_waypoints=True)
 def cite_comparisons(study: Study) -> Iterator[Finding]:
     """Findings of TG405: information only, for settings, operators and seeds are not printed."""
     for claim in study.claims:
@@ -155,13 +158,10 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
             continue
         first = known.listed[0]
         both = {one: study.called(getattr(known, one)) for one in ("improved", "standard")}
-        yield finding(
-            "TG405",
+        yield TG405.finding(
             claim,
             "study",
             *comparison_words(known.model_copy(update=both), study.case),
-            basis=Basis.REPLAY,
-            decides=False,
             printed=known.printed,
             computed=f"holds in {_percent(first.shown.share)} of the pairs",
         )

@@ -15,27 +15,31 @@ from ..printed_row import PrintedRow, named_rows
 from ..stated import RowClaim, all_called, called_under
 from ..study import Study
 from .peaks import largest
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
-
-@rule_group(
-    TG107=Explained(
-        "The conditions stated fit the number of coefficients",
-        "Can a curve satisfy all conditions that the paper states? They are counted against the "
-        "coefficients of the polynomials, segment by segment.",
-        "Refuted if the printed count differs, or if no polynomial of the stated degree satisfies "
-        "the conditions. More conditions than coefficients get a warning: all of them can hold "
-        "only for special way-points.",
-        "A cubic has four coefficients. If position, velocity and acceleration are given at both "
-        "ends, there are six conditions for four coefficients.",
-    ),
-    TG207=Explained(
-        "The motion is at rest where it is said to be",
-        "Is the motion at rest if the paper says so? The derivatives at both ends are computed.",
-        "Supported if they vanish, inconsistent if one does not.",
-        "A paper says “starts and ends at rest”, but its natural cubic spline starts at 68 °/s.",
-    ),
+TG107 = Explained(
+    "TG107",
+    "The conditions stated fit the number of coefficients",
+    "Can a curve satisfy all conditions that the paper states? They are counted against the "
+    "coefficients of the polynomials, segment by segment.",
+    "Refuted if the printed count differs, or if no polynomial of the stated degree satisfies "
+    "the conditions. More conditions than coefficients get a warning: all of them can hold "
+    "only for special way-points.",
+    "A cubic has four coefficients. If position, velocity and acceleration are given at both "
+    "ends, there are six conditions for four coefficients.",
+    basis=Basis.COUNT,
 )
+TG207 = Explained(
+    "TG207",
+    "The motion is at rest where it is said to be",
+    "Is the motion at rest if the paper says so? The derivatives at both ends are computed.",
+    "Supported if they vanish, inconsistent if one does not.",
+    "A paper says “starts and ends at rest”, but its natural cubic spline starts at 68 °/s.",
+    basis=Basis.CHECK,
+)
+
+
+@rule_group(TG107, TG207)
 def judge_counts(study: Study) -> Iterator[Finding]:
     """Findings of TG107 and TG207."""
     for claim in study.claims:
@@ -95,18 +99,15 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     elif wanted > available:
         verdict, severity, kind = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING, "too many"
         more = "All of them can hold only for special way-points."
-    return finding(
-        "TG107",
+    return TG107.finding(
         claim,
         kind,
         f"{said}.",
         more,
         severity=severity,
         verdict=verdict,
-        basis=Basis.COUNT,
         printed=printed,
         computed=computed,
-        # A printed count may be wrong; that the declared curve meets its own conditions cannot.
         built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
 
@@ -194,14 +195,12 @@ def _at_rest(
         elif others and of:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
             unknown = f"No motion is built from {all_called(others)}."
-        yield finding(
-            "TG207",
+        yield TG207.finding(
             claim,
             kind,
             message,
             unknown,
             verdict=verdict,
-            basis=Basis.CHECK,
             reading=reading,
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )

@@ -16,50 +16,47 @@ from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS
 from ..stated import DERIVATIVES, RowClaim, all_called, called_under
 from ..study import Study
-from .judged_rows import broken, judged_row, ratio_at_print
+from .judged_rows import TG201, broken, judged_row, ratio_at_print
 from .linear_blends import judge_row
 from .peaks import box_reach, jump_shown, jumps_shown, largest, largest_of_each_kind
-from .rule_group import INFORMS, Explained, finding, rule_group
+from .rule_group import INFORMS, Explained, rule_group
 
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
 
 
-@rule_group(
-    TG201=Explained(
-        "Printed durations keep the limits for all t, over the rounding box",
-        "Do the printed durations keep the printed limits at every instant? The motion is rebuilt "
-        "from the printed durations and way-points, and its extrema are exact.",
-        "Supported if the limits are kept by the printed numbers, or by some values that "
-        "round to them. Refuted only if a limit is broken however the digits were rounded, and "
-        "however they were cut off.",
-        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is not a fault if durations "
-        "printed with two decimals explain it; 2.6 rad/s is one.",
-    ),
-    TG202=Explained(
-        "Position, velocity and acceleration are continuous",
-        "Are position, velocity and acceleration continuous, as the paper says?",
-        "Supported if the motion built from the printed numbers is continuous under the "
-        "reading, inconsistent if it jumps. Limits are judged separately from jumps.",
-        "Cubic segments that are stretched one by one have equal slopes only if neighbouring "
-        "durations are equal; otherwise the velocity jumps at the via-points.",
-    ),
-    TG204=Explained(
-        "The printed durations reach the limits",
-        "Which limits do the printed durations reach? The shortest motion reaches at least one.",
-        INFORMS + " A motion that reaches no limit could be shorter.",
-        "The largest velocity is 62 % of its limit and the largest acceleration 71 %: all "
-        "durations could be shortened by the same factor.",
-    ),
-    TG206=Explained(
-        "Acceleration jumps where it is said to",
-        "Does the acceleration jump if the paper says that a method makes it jump?",
-        "Supported if it does. If it does not jump under a reading, that speaks against the "
-        "reading.",
-        "“The acceleration of the 3-5-3 curve changes suddenly at the via-points” is compared "
-        "with the accelerations on both sides of each via-point.",
-    ),
+TG202 = Explained(
+    "TG202",
+    "Position, velocity and acceleration are continuous",
+    "Are position, velocity and acceleration continuous, as the paper says?",
+    "Supported if the motion built from the printed numbers is continuous under the "
+    "reading, inconsistent if it jumps. Limits are judged separately from jumps.",
+    "Cubic segments that are stretched one by one have equal slopes only if neighbouring "
+    "durations are equal; otherwise the velocity jumps at the via-points.",
+    basis=Basis.CHECK,
 )
+TG204 = Explained(
+    "TG204",
+    "The printed durations reach the limits",
+    "Which limits do the printed durations reach? The shortest motion reaches at least one.",
+    INFORMS + " A motion that reaches no limit could be shorter.",
+    "The largest velocity is 62 % of its limit and the largest acceleration 71 %: all "
+    "durations could be shortened by the same factor.",
+    basis=Basis.CHECK,
+    decides=False,
+)
+TG206 = Explained(
+    "TG206",
+    "Acceleration jumps where it is said to",
+    "Does the acceleration jump if the paper says that a method makes it jump?",
+    "Supported if it does. If it does not jump under a reading, that speaks against the reading.",
+    "“The acceleration of the 3-5-3 curve changes suddenly at the via-points” is compared "
+    "with the accelerations on both sides of each via-point.",
+    basis=Basis.CHECK,
+)
+
+
+@rule_group(TG201, TG202, TG204, TG206)
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
     judges: dict[str, Callable[[Study, StatementClaim], Iterator[Finding]]]
@@ -82,12 +79,11 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
         for row in printed_rows(study, claim):
             proof = broken(row) or below_certified(row)
             if proof is not None:
-                yield row.finding(
-                    "TG201",
+                yield TG201.finding(
+                    row,
                     "total excluded",
                     *proof,
                     verdict=ClaimVerdict.REFUTED,
-                    basis=Basis.ENCLOSURE,
                     printed=f"{claim.value} {study.time_unit}",
                     root=f"{LIMITS} {claim.id}",
                 )
@@ -98,8 +94,8 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     for row in printed_rows(study, claim):
         judged = judged_row(row)
         verdict, severity = said_of(study.case, claim, judged.verdict, judged.severity)
-        yield row.finding(
-            "TG201",
+        yield TG201.finding(
+            row,
             judged.kind,
             *judged.sentences,
             "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
@@ -124,13 +120,12 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             f"in joint {top.joint} at t = {seconds(top.time)} by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
         )
-        yield row.finding(
-            "TG202",
+        yield TG202.finding(
+            row,
             "velocity jumps",
             f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
             f"times at the via-points, the largest jump {most}.",
             "Limits are judged separately from jumps.",
-            basis=Basis.CHECK,
             printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             decides=False,
@@ -169,13 +164,11 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 if one.kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
                 for x in _placed(study, claim, one)
             ] or [f"The printed digits do not decide whether the limits are kept: {names}."]
-        yield finding(
-            "TG201",
+        yield TG201.finding(
             claim,
             str(verdict),
             *sentences,
             verdict=verdict,
-            basis=Basis.ENCLOSURE,
             reading=reading,
             follows=tuple(one.root for one in breaking),
         )
@@ -194,7 +187,7 @@ def _elsewhere(study: Study, claim: AnyClaim, reading: str) -> list[Finding]:
     if not rows:
         said = "No motion is built from these durations here, so they are not judged."
         problem = claim.problem
-        return [finding("TG201", claim, _ELSEWHERE, said, basis=Basis.TEXT, problem=problem)]
+        return [TG201.finding(claim, _ELSEWHERE, said, basis=Basis.TEXT, problem=problem)]
     return [row.model_copy(update={"kind": _ELSEWHERE}) for row in rows]
 
 
@@ -233,14 +226,12 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             message = (
                 f"The motion is discontinuous: {len(jumps)} jumps, the largest {largest_ones}."
             )
-        yield finding(
-            "TG202",
+        yield TG202.finding(
             claim,
             kind,
             message,
             more,
             verdict=verdict,
-            basis=Basis.CHECK,
             reading=reading,
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
@@ -286,9 +277,7 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 f"Under this reading the acceleration{whose} agrees on both sides of every break; "
                 "a steep change is not a discontinuity, and the figures are not in the text."
             )
-        yield finding(
-            "TG206", claim, kind, message, verdict=verdict, basis=Basis.CHECK, reading=reading
-        )
+        yield TG206.finding(claim, kind, message, verdict=verdict, reading=reading)
 
 
 def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
@@ -315,14 +304,12 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                         f"at its limit {row.shown(quantity, limit, label)}"
                     )
         if tight:
-            yield row.finding(
-                "TG204",
+            yield TG204.finding(
+                row,
                 "reached",
                 "To first order in the rounding of the printed inputs, a limit is reached: "
                 f"{'; '.join(tight)}.",
                 verdict=ClaimVerdict.SUPPORTED,
-                basis=Basis.CHECK,
                 printed=study.durations_digits(claim),
                 computed="; ".join(tight),
-                decides=False,
             )

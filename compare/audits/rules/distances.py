@@ -34,7 +34,7 @@ from ..stated import RowClaim, called, called_under, other_objective
 from ..stated_totals import contradicting_lows, rounded_up_low, total_excludes
 from ..study import Study, Total
 from .judged_rows import broken
-from .rule_group import INFORMS, Explained, finding, rule_group
+from .rule_group import INFORMS, Explained, rule_group
 
 _BELOW = (
     "The whole printed interval is below the best known total; a misprint or a better optimum may "
@@ -48,24 +48,30 @@ _BELOW_BOUND = (
 """What is said of a printed total below a proved bound."""
 
 
-@rule_group(
-    TG302=Explained(
-        "Distance of a printed total from the optimum of its own formulation",
-        "How far is a printed total from the optimum of the paper's own problem: its curve, "
-        "its way-points, its limits?",
-        "A distance alone supports and refutes nothing. “Optimal” is refuted by a shorter "
-        "motion that keeps the limits however the digits were rounded.",
-        "3.172 s is printed for joint 3, whose proven optimum is 3.126 s: 1.5 % above it.",
-    ),
-    TG303=Explained(
-        "Distance of a printed total from the optimum with shared durations",
-        "The same distance if all joints pass each way-point together, although the paper times "
-        "each joint separately.",
-        INFORMS,
-        "Each joint is optimised separately, and each segment then takes the longest of their "
-        "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
-    ),
+TG302 = Explained(
+    "TG302",
+    "Distance of a printed total from the optimum of its own formulation",
+    "How far is a printed total from the optimum of the paper's own problem: its curve, "
+    "its way-points, its limits?",
+    "A distance alone supports and refutes nothing. “Optimal” is refuted by a shorter "
+    "motion that keeps the limits however the digits were rounded.",
+    "3.172 s is printed for joint 3, whose proven optimum is 3.126 s: 1.5 % above it.",
+    basis=Basis.OPTIMUM,
 )
+TG303 = Explained(
+    "TG303",
+    "Distance of a printed total from the optimum with shared durations",
+    "The same distance if all joints pass each way-point together, although the paper times "
+    "each joint separately.",
+    INFORMS,
+    "Each joint is optimised separately, and each segment then takes the longest of their "
+    "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
+    basis=Basis.OPTIMUM,
+    decides=False,
+)
+
+
+@rule_group(TG302, TG303)
 def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:
@@ -86,8 +92,8 @@ def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     reference = reference_of(solution)
     other = off_ratios(row)
     if other is not None:
-        yield row.finding(
-            "TG302",
+        yield TG302.finding(
+            row,
             "other ratios",
             f"Printed are {other}.",
             "They answer a question other than the shortest total at these ratios, and are not "
@@ -145,14 +151,13 @@ def _distance(
             severity = Severity.INFO if before else Severity.WARNING
             said.append(_BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND)
     agrees = kept and near
-    return row.finding(
-        "TG303" if shared else "TG302",
+    return (TG303 if shared else TG302).finding(
+        row,
         "other objective" if informs else "distance",
         *said,
         severity=severity,
         verdict=ClaimVerdict.SUPPORTED if agrees else ClaimVerdict.NOT_CHECKABLE,
         evidence=solution.evidence,
-        basis=Basis.OPTIMUM,
         printed=shown,
         computed=seconds(reference.upper, ".6f"),
         gap=distance,
@@ -241,13 +246,12 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
         )
         + f"; the printed {shown} lies {'inside' if inside else 'outside'} that range."
     )
-    yield row.finding(
-        "TG302",
+    yield TG302.finding(
+        row,
         "joint by joint",
         message,
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
         evidence=answer.evidence,
-        basis=Basis.OPTIMUM,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
         decides=False,
@@ -386,8 +390,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             which = " or the ".join(sorted(called_so))
             whose = _what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]
-        yield finding(
-            "TG302",
+        yield TG302.finding(
             statement,
             "longer" if longer else "breaks" if breaking else str(evidence),
             *said,

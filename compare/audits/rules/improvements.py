@@ -14,25 +14,27 @@ from ..stated import allowed_bases, printed_total
 from ..study import Study
 from .printed_digits import compared, raised, shown, span
 from .printed_tables import contradicted, doubted, total_allowed
-from .rule_group import ON_DIGITS, Explained, finding, rule_group
+from .rule_group import ON_DIGITS, Explained, rule_group
 
 _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
 """What a percentage may be a share of; of the longer total, if either fits."""
 
 
-@rule_group(
-    TG103=Explained(
-        "A printed improvement follows from the printed totals",
-        "Does a printed improvement follow from the two totals that it compares? A percentage may "
-        "be a share of either total, unless the text says which.",
-        "Supported if some values that round to the printed totals give it, otherwise refuted; "
-        "inconsistent if two places print different totals. If only the order of two totals is "
-        "claimed, a longer total that is called the better one is refuted. " + ON_DIGITS,
-        "From 4.00 s to 3.60 s the total falls by 9.8 to 10.2 % of the longer total, or by 11 "
-        "% of the shorter one. “10 %” and “11 %” are supported; “15 %” is refuted.",
-    ),
-    without_waypoints=True,
+TG103 = Explained(
+    "TG103",
+    "A printed improvement follows from the printed totals",
+    "Does a printed improvement follow from the two totals that it compares? A percentage may "
+    "be a share of either total, unless the text says which.",
+    "Supported if some values that round to the printed totals give it, otherwise refuted; "
+    "inconsistent if two places print different totals. If only the order of two totals is "
+    "claimed, a longer total that is called the better one is refuted. " + ON_DIGITS,
+    "From 4.00 s to 3.60 s the total falls by 9.8 to 10.2 % of the longer total, or by 11 "
+    "% of the shorter one. “10 %” and “11 %” are supported; “15 %” is refuted.",
+    basis=Basis.DIGITS,
 )
+
+
+@rule_group(TG103, without_waypoints=True)
 def judge_improvements(study: Study) -> Iterator[Finding]:
     """Findings of TG103."""
     for claim in study.claims:
@@ -49,7 +51,7 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
         if claim.seconds is not None:
             cut = _difference(slower.truncated, faster.truncated)
             said = claim, claim.seconds, one.seconds, cut, one.what, study.time_unit, one.root
-            yield compared("TG103", *said, mixed=_difference(longer, shorter))
+            yield compared(TG103, *said, mixed=_difference(longer, shorter))
         if claim.percent is None and claim.seconds is None:
             yield _unquantified(one)
         if claim.percent is not None:
@@ -126,12 +128,10 @@ def _percentage(one: _Improved, percent: Printed) -> Finding:
     tried, slower, faster = [], one.slower, one.faster
     bases = one.bases
     if not bases:
-        return finding(
-            "TG103",
+        return TG103.finding(
             one.claim,
             "share of nothing",
             f"A share of {one.faster} {one.study.time_unit}, which may be 0, cannot be computed.",
-            basis=Basis.DIGITS,
         )
     for base in bases:
         share = f"{one.what}, as a share of {_SHARE_OF[base]},"
@@ -141,7 +141,7 @@ def _percentage(one: _Improved, percent: Printed) -> Finding:
         up = _share(longer, shorter, base) if longer.lower > 0 < shorter.lower else None
         said = one.claim, percent, rounded, cut, share, "%", one.root
         # A total may be the sum of digits cut off, and the percentage that of the whole numbers.
-        found = compared("TG103", *said, mixed=_share(*one.wide, base), raised_parts=up)
+        found = compared(TG103, *said, mixed=_share(*one.wide, base), raised_parts=up)
         tried.append(found.model_copy(update={"computed": f"{_as_printed(rounded, percent)} %"}))
     weights = list(Severity)
     best = max(range(len(tried)), key=lambda k: weights.index(tried[k].severity))
@@ -198,14 +198,12 @@ def _unquantified(one: _Improved) -> Finding:
     else:
         kind = "within rounding"
         message = f"The printed totals {one.between} do not differ by more than their rounding"
-    return finding(
-        "TG103",
+    return TG103.finding(
         one.claim,
         kind,
         f"{message}.",
         more,
         verdict=verdict,
-        basis=Basis.DIGITS,
         printed=one.between,
         follows=doubted(study, one.sides),
     )
@@ -228,8 +226,7 @@ def _against_tables(one: _Improved, percent: Printed) -> Iterator[Finding]:
     allowed = found[0]
     where = " and ".join(table.where for table in tables)
     slower, faster = map(printed_total, tables)
-    yield finding(
-        "TG103",
+    yield TG103.finding(
         claim,
         "of the tables",
         f"{own} the totals printed in the tables ({where}: {slower} and {faster}) the "
@@ -237,7 +234,6 @@ def _against_tables(one: _Improved, percent: Printed) -> Iterator[Finding]:
         f"{percent} %.",
         severity=Severity.ERROR,
         verdict=ClaimVerdict.INCONSISTENT,
-        basis=Basis.DIGITS,
         printed=f"{percent} %",
         computed=f"{span(allowed, 3)} %",
         follows=doubted(study, tables),

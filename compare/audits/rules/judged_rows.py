@@ -9,7 +9,20 @@ from ....problem.cases import AnyClaim, TimeClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..printed_row import PrintedRow
 from ..roots import LIMITS
+from .rule_group import Explained
 
+TG201 = Explained(
+    "TG201",
+    "Printed durations keep the limits for all t, over the rounding box",
+    "Do the printed durations keep the printed limits at every instant? The motion is rebuilt "
+    "from the printed durations and way-points, and its extrema are exact.",
+    "Supported if the limits are kept by the printed numbers, or by some values that "
+    "round to them. Refuted only if a limit is broken however the digits were rounded, and "
+    "however they were cut off.",
+    "A velocity of 2.0004 rad/s against a limit of 2 rad/s is not a fault if durations "
+    "printed with two decimals explain it; 2.6 rad/s is one.",
+    basis=Basis.ENCLOSURE,
+)
 _VERDICTS = {
     Rounding.KEEPS: (ClaimVerdict.SUPPORTED, "The printed numbers keep every limit for all t"),
     Rounding.CONSISTENT: (
@@ -91,7 +104,7 @@ def _judged_total(row: PrintedRow[AnyClaim]) -> Finding:
 def _found(row: PrintedRow[AnyClaim], kind: str, *said: str, **facts: Any) -> Finding:
     refuted = facts.get("verdict") is ClaimVerdict.REFUTED
     root = f"{LIMITS} {row.claim.id}" if refuted else ""
-    return row.finding("TG201", kind, *said, basis=Basis.ENCLOSURE, root=root, **facts)
+    return TG201.finding(row, kind, *said, root=root, **facts)
 
 
 def broken(row: PrintedRow[AnyClaim]) -> tuple[str, ...] | None:

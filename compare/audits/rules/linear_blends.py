@@ -43,18 +43,21 @@ class _Found:
     worst: str
 
 
-@rule_group(
-    TG210=Explained(
-        "Linear segments with parabolic blends keep the limits",
-        "Do linear segments with parabolic blends keep the limits with the printed durations and "
-        "blends?",
-        "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, however the "
-        "digits were rounded and wherever the end blends lie. Such a motion is not compared with "
-        "an optimum, because it does not pass its via-points.",
-        "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
-        "first via-point, which takes 56 °/s². The limit is 50 °/s².",
-    )
+TG210 = Explained(
+    "TG210",
+    "Linear segments with parabolic blends keep the limits",
+    "Do linear segments with parabolic blends keep the limits with the printed durations and "
+    "blends?",
+    "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, however the "
+    "digits were rounded and wherever the end blends lie. Such a motion is not compared with "
+    "an optimum, because it does not pass its via-points.",
+    "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
+    "first via-point, which takes 56 °/s². The limit is 50 °/s².",
+    basis=Basis.ENCLOSURE,
 )
+
+
+@rule_group(TG210)
 def judge_blends(study: Study) -> Iterator[Finding]:
     """Findings of TG210."""
     for claim in study.claims:
@@ -126,15 +129,14 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
                 "keep the limits with these durations."
             )
     verdict, _ = said_of(study.case, claim, meant, Severity.INFO)
-    return row.finding(
-        "TG210",
+    return TG210.finding(
+        row,
         str(meant),
         message,
         at_print,
         passes,
         UNSAID if verdict is not meant else "",
         verdict=verdict,
-        basis=Basis.ENCLOSURE,
         printed=study.durations_digits(claim),
         computed=computed,
         decides=meant_to_keep(study.case, claim),

@@ -25,7 +25,7 @@ from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
 from .beside import SAMPLES, Beside, nearest_number
 from .peaks import beside, peak_described
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
@@ -250,7 +250,7 @@ _Value = TypeVar("_Value", PeakClaim, MeasureClaim, ValueClaim)
 
 def _judged(
     study: Study,
-    rule: str,
+    rule: Explained,
     kind: type[_Value],
     beside: Callable[[PrintedRow[AnyClaim], _Value, Printed, str | None], Beside | None],
     described: Callable[[PrintedRow[AnyClaim], _Value, Beside], str],
@@ -284,12 +284,12 @@ def _judged(
                     said = [described(row, claim, one) for one in told]
                     yield _found(row, rule, claim, known, told, "; ".join(said))
         if not meant:
-            yield finding(rule, claim, "no motion", without, basis=Basis.TEXT)
+            yield rule.finding(claim, "no motion", without, basis=Basis.TEXT)
 
 
 def _found(
     row: PrintedRow[AnyClaim],
-    rule: str,
+    rule: Explained,
     claim: _Value,
     found: Sequence[Beside],
     told: Sequence[Beside],
@@ -301,8 +301,8 @@ def _found(
         # What rounds to derivatives at the ends, knots and parameters is not looked at.
         note = f"{loose} are rounded numbers, which may explain it." if loose else ""
     clash = verdict is ClaimVerdict.INCONSISTENT
-    return row.finding(
-        rule,
+    return rule.finding(
+        row,
         ", ".join(map(_word, told)),
         f"For the printed durations ({called(row.claim)}): {said}.",
         note,
@@ -321,53 +321,62 @@ def _word(one: Beside) -> str:
     return str(one.kind) if one.linear is not None else "fits" if one.fits else "off"
 
 
-@rule_group(
-    TG203=Explained(
-        "Printed peaks follow from the printed durations",
-        "Does a printed peak belong to the motion that it describes?",
-        "Supported if it agrees within rounding or with digits cut off, or is slightly lower, as "
-        "sampling would give; one number for all joints may be the largest of them or their "
-        "largest norm. "
-        "Inconsistent if none of these explains it. If the ratio is that of two units, the report "
-        "names them.",
-        "The exact peak is 21.351 rad/s². A printed 21.35 is rounded, 21.34 comes from sampling, "
-        "and 1223 is the same number in degrees.",
-    )
+TG203 = Explained(
+    "TG203",
+    "Printed peaks follow from the printed durations",
+    "Does a printed peak belong to the motion that it describes?",
+    "Supported if it agrees within rounding or with digits cut off, or is slightly lower, as "
+    "sampling would give; one number for all joints may be the largest of them or their "
+    "largest norm. "
+    "Inconsistent if none of these explains it. If the ratio is that of two units, the report "
+    "names them.",
+    "The exact peak is 21.351 rad/s². A printed 21.35 is rounded, 21.34 comes from sampling, "
+    "and 1223 is the same number in degrees.",
+    basis=Basis.COMPUTED,
 )
+
+
+@rule_group(TG203)
 def judge_peaks(study: Study) -> Iterator[Finding]:
     """Findings of TG203."""
     without = "No durations are printed from which this peak could be computed."
-    return _judged(study, "TG203", PeakClaim, beside, peak_described, without)
+    return _judged(study, TG203, PeakClaim, beside, peak_described, without)
 
 
-@rule_group(
-    TG208=Explained(
-        "Printed means and integrals follow from the printed durations",
-        "Does a printed mean, root mean square or integral of velocity, acceleration or jerk "
-        "belong to the motion that it describes?",
-        "Supported if it agrees within rounding, with digits cut off, or with 50 samples or more; "
-        "one number for all joints may be of their norm, of the largest joint, or their mean or "
-        "sum. "
-        "Inconsistent if none of these explains it.",
-        "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
-    )
+TG208 = Explained(
+    "TG208",
+    "Printed means and integrals follow from the printed durations",
+    "Does a printed mean, root mean square or integral of velocity, acceleration or jerk "
+    "belong to the motion that it describes?",
+    "Supported if it agrees within rounding, with digits cut off, or with 50 samples or more; "
+    "one number for all joints may be of their norm, of the largest joint, or their mean or "
+    "sum. "
+    "Inconsistent if none of these explains it.",
+    "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
+    basis=Basis.COMPUTED,
 )
+
+
+@rule_group(TG208)
 def judge_measures(study: Study) -> Iterator[Finding]:
     """Findings of TG208."""
-    return _judged(study, "TG208", MeasureClaim, measure_beside, measure_described)
+    return _judged(study, TG208, MeasureClaim, measure_beside, measure_described)
 
 
-@rule_group(
-    TG211=Explained(
-        "Printed values at one place follow from the printed durations",
-        "Does a printed position or derivative at a way-point, at an instant or at its largest "
-        "value follow from the printed durations?",
-        "Inconsistent if it differs by more than the printed digits allow. If a derivative jumps, "
-        "either side may be meant; a largest or smallest value may also come from samples.",
-        "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
-        "the printed times passes it at -175.71 °/s.",
-    )
+TG211 = Explained(
+    "TG211",
+    "Printed values at one place follow from the printed durations",
+    "Does a printed position or derivative at a way-point, at an instant or at its largest "
+    "value follow from the printed durations?",
+    "Inconsistent if it differs by more than the printed digits allow. If a derivative jumps, "
+    "either side may be meant; a largest or smallest value may also come from samples.",
+    "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
+    "the printed times passes it at -175.71 °/s.",
+    basis=Basis.COMPUTED,
 )
+
+
+@rule_group(TG211)
 def judge_values(study: Study) -> Iterator[Finding]:
     """Findings of TG211."""
-    return _judged(study, "TG211", ValueClaim, value_beside, value_described)
+    return _judged(study, TG211, ValueClaim, value_beside, value_described)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -33,22 +32,25 @@ HANDLED = {
 """What each objective does, in words."""
 
 
-@rule_group(
-    TG404=Explained(
-        "A relative claim, tried on instances drawn from the robot's workspace",
-        "If no way-points are printed, how large is the improvement on instances that are drawn "
-        "from the workspace of the robot?",
-        INFORMS + " The instances are not the paper's.",
-        "On 50 instances one run of B is 8 to 14 % shorter than one of A; 10.5 % is printed.",
-    ),
-    without_waypoints=True,
+TG404 = Explained(
+    "TG404",
+    "A relative claim, tried on instances drawn from the robot's workspace",
+    "If no way-points are printed, how large is the improvement on instances that are drawn "
+    "from the workspace of the robot?",
+    INFORMS + " The instances are not the paper's.",
+    "On 50 instances one run of B is 8 to 14 % shorter than one of A; 10.5 % is printed.",
+    basis=Basis.REPLAY,
+    decides=False,
 )
+
+
+@rule_group(TG404, without_waypoints=True)
 def judge_instances(study: Study) -> Iterator[Finding]:
     """Findings of TG404. None of them decides: the instances are not the paper's."""
     for block in study.case.instances:
         why = unexamined(study, block) if readings_of(study, block) else None
         if why is not None:
-            yield _informing(None, "not examined", f"Family {block.id} is not examined: {why}.")
+            yield TG404.finding(None, "not examined", f"Family {block.id} is not examined: {why}.")
     for block in examinable(study):
         result = examined(study, block)
         yield _summary(result)
@@ -122,22 +124,17 @@ def _summary(result: InstancesResult) -> Finding:
     block = result.block
     span = medians(result, Effect.BOTH)
     computed = f"medians {percent_range(*span, digits=1)}" if span else "no pair of answers"
-    return _informing(
-        block.claim,
+    return TG404.finding(
+        None,
         "over the readings",
         placed(result),
         *attributed(result),
         block.why,
         "These are not the paper's instances, so they decide nothing about its totals.",
+        claim=block.claim,
         printed=_printed(result),
         computed=computed,
     )
-
-
-def _informing(claim: str | None, kind: str, *sentences: str, **facts: Any) -> Finding:
-    """What decides nothing, for the instances are not the paper's."""
-    facts |= {"claim": claim, "kind": kind, "sentences": sentences}
-    return Finding(rule="TG404", basis=Basis.REPLAY, decides=False, **facts)
 
 
 def _printed(result: InstancesResult) -> str | None:
@@ -191,7 +188,7 @@ def _under(result: InstancesResult, reading: str) -> Finding:
     if failed:
         parts.append(f"{failed} runs found no motion within the limits.")
     facts = {"reading": reading, "printed": _printed(result), "computed": str(both)}
-    return _informing(block.claim, "under a reading", *parts, **facts)
+    return TG404.finding(None, "under a reading", *parts, claim=block.claim, **facts)
 
 
 def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
@@ -218,8 +215,8 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         f"{percent(share)} under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
-    return _informing(
-        claim.id,
+    return TG404.finding(
+        claim,
         "convergence",
         f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
         f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its "

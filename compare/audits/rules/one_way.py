@@ -14,7 +14,22 @@ from ..named_profiles import RESTING, profile_called, resting_total
 from ..printed_row import PrintedRow
 from ..profile_motions import with_own_limit
 from ..study import Study
+from .rule_group import Explained
 
+TG304 = Explained(
+    "TG304",
+    "Printed numbers of a profile agree with the profile that the limits allow",
+    "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
+    "limits allow between the states at its ends? Are the phases, peaks and values those of "
+    "this profile?",
+    "Supported within rounding, else inconsistent: the paper may have meant another profile. "
+    "Without way-points, several totals are supported if one way serves them all. "
+    "Not checkable if the shortest total jumps within the rounding, or for several joints "
+    "between moving ends.",
+    "A motion of 140° within 150 °/s, 70 °/s² and 70 °/s³ takes 4 s if the jerk is constant "
+    "in phases.",
+    basis=Basis.COMPUTED,
+)
 _CLOSE = 1e-12
 """Share to which a way is computed: well below any printed digit."""
 
@@ -87,8 +102,8 @@ def _together(group: list[_Ways]) -> Iterator[Finding]:
             if fits
             else f"no one way serves all {len(group)} totals"
         )
-        yield row.finding(
-            "TG304",
+        yield TG304.finding(
+            row,
             "one way" if fits else "no one way",
             f"The {profile_called([str(row.claim.profile)])} from rest to rest takes "
             f"{row.claim.value} {row.study.time_unit} for a way of {ways[0]} to {ways[1]} "

@@ -10,26 +10,27 @@ from ..study import Study
 from .one_way import judge_one_way
 from .rule_group import Explained, rule_group
 
-
-@rule_group(
-    TG501=Explained(
-        "Not checkable from the text",
-        "What information does the text lack that a claim needs?",
-        "Not checkable, with the reason.",
-        "Way-points are shown in a figure only.",
-    ),
-    without_waypoints=True,
+TG501 = Explained(
+    "TG501",
+    "Not checkable from the text",
+    "What information does the text lack that a claim needs?",
+    "Not checkable, with the reason.",
+    "Way-points are shown in a figure only.",
+    basis=Basis.TEXT,
 )
+
+
+@rule_group(TG501, without_waypoints=True)
 def list_open_points(study: Study) -> Iterator[Finding]:
     """One finding per statement and per damaged passage, never more than "not checkable"."""
     for claim in study.claims:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
             why = claim.not_checkable.removesuffix(".")
-            yield _listed(claim.id, "claim", f"{why}.")
+            yield TG501.finding(claim, "claim", f"{why}.")
     if not study.has_problems:
         yield from _without_waypoints(study)
     for item in study.case.not_checkable:
-        yield _listed(None, "passage", f"{item.where}: {item.what}", item.why)
+        yield TG501.finding(None, "passage", f"{item.where}: {item.what}", item.why)
 
 
 def _without_waypoints(study: Study) -> Iterator[Finding]:
@@ -42,8 +43,4 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")
         sentence = f"Without the way-points, nothing can be computed: {why}."
-        yield _listed(claim.id, "way-points", sentence)
-
-
-def _listed(claim: str | None, kind: str, *sentences: str) -> Finding:
-    return Finding(rule="TG501", basis=Basis.TEXT, claim=claim, kind=kind, sentences=sentences)
+        yield TG501.finding(claim, "way-points", sentence)

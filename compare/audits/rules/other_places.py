@@ -16,18 +16,21 @@ from ..study import Study
 from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
-from .rule_group import INFORMS, Explained, finding, rule_group
+from .rule_group import INFORMS, Explained, rule_group
 
-
-@rule_group(
-    TG108=Explained(
-        "Printed numbers fit their own row, column or table best",
-        "Would printed numbers fit another row, column or table better than their own?",
-        "Information, with both distances. It does not say that anything was exchanged. " + INFORMS,
-        "The peak printed for joint 2 differs by 40 % from that of its motion and by 0.1 % from "
-        "that of joint 3, and vice versa.",
-    )
+TG108 = Explained(
+    "TG108",
+    "Printed numbers fit their own row, column or table best",
+    "Would printed numbers fit another row, column or table better than their own?",
+    "Information, with both distances. It does not say that anything was exchanged. " + INFORMS,
+    "The peak printed for joint 2 differs by 40 % from that of its motion and by 0.1 % from "
+    "that of joint 3, and vice versa.",
+    basis=Basis.CHECK,
+    decides=False,
 )
+
+
+@rule_group(TG108)
 def judge_places(study: Study) -> Iterator[Finding]:
     """Findings of TG108. They decide nothing: a slip of the printer is no fault of the numbers."""
     for claim in study.claims:
@@ -67,13 +70,11 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     f"motion and {percent(distance, '.2g')} from that of {called(motion)}{whose}"
                 )
         if said:
-            yield row.finding(
-                "TG108",
+            yield TG108.finding(
+                row,
                 "peaks",
                 "Printed peaks fit another place better than their own, as if numbers had been "
                 f"exchanged in print: {'; '.join(said)}.",
-                decides=False,
-                basis=Basis.CHECK,
                 claim=claim.id,
                 printed=", ".join(map(str, claim.printed)),
             )
@@ -96,15 +97,13 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
         )
         # Within one per cent a row is said to fit the limits of another.
         if best <= 0.01:
-            yield row.finding(
-                "TG108",
+            yield TG108.finding(
+                row,
                 "rows",
                 f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
                 f"to be stretched by {percent(own, '.2g')} for its own limits and fit those of "
                 f"joint {joint} within {percent(best, '.2g')}, as if rows had been exchanged in "
                 "print.",
-                decides=False,
-                basis=Basis.CHECK,
             )
 
 
@@ -124,14 +123,12 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
         tables = [set(doubted(study, [one])) for one in (first, second)]
         if _named(first) == _named(second) or tables[0] & tables[1]:
             continue
-        yield finding(
-            "TG108",
+        yield TG108.finding(
             second,
             "equal rows",
             f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
             "for different things.",
             basis=Basis.DIGITS,
-            decides=False,
             printed=", ".join(texts[1]),
         )
 

@@ -276,17 +276,20 @@ def jumps_shown(jumps: Sequence[_Jump], form: str = ".6g") -> list[str]:
     return [jump_shown(row, jump, form).removeprefix("-") for row, jump in largest_ones]
 
 
-@rule_group(
-    TG209=Explained(
-        "Printed peaks lie within the limits that the text calls kept",
-        "Does a printed peak exceed the limit that its motion is said to keep?",
-        "Inconsistent if the peak exceeds the limit however the digits of both were rounded, "
-        "rounded up or cut off. A number for several joints at once may be a norm and is not "
-        "compared.",
-        "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
-        "the abstract says that no limit is exceeded.",
-    )
+TG209 = Explained(
+    "TG209",
+    "Printed peaks lie within the limits that the text calls kept",
+    "Does a printed peak exceed the limit that its motion is said to keep?",
+    "Inconsistent if the peak exceeds the limit however the digits of both were rounded, "
+    "rounded up or cut off. A number for several joints at once may be a norm and is not "
+    "compared.",
+    "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
+    "the abstract says that no limit is exceeded.",
+    basis=Basis.DIGITS,
 )
+
+
+@rule_group(TG209)
 def judge_peak_limits(study: Study) -> Iterator[Finding]:
     """Findings of TG209."""
     for claim in study.claims:
@@ -303,13 +306,12 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
         for row in printed_rows(study, motion):
             said = _above(row, peak)
             if said:
-                yield row.finding(
-                    "TG209",
+                yield TG209.finding(
+                    row,
                     "beyond",
                     f"{place(peak)} prints {'; '.join(said)}.",
                     severity=Severity.ERROR,
                     verdict=ClaimVerdict.INCONSISTENT,
-                    basis=Basis.DIGITS,
                     claim=claim.id,
                     printed=", ".join(map(str, peak.printed)),
                     root=f"peaks beyond limits {claim.id}",

@@ -13,11 +13,13 @@ from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
 _CUT_OFF = 2.0
 """Multiple of what rounding explains up to which digits that were cut off explain a miss."""
 
+_APART = "not set beside"
+"""Kind of what says why angles and positions are not compared."""
 Joints = dict[str, tuple[Measured, ...]]
 """Angles of the printed joints at every way-point."""
 
@@ -53,18 +55,20 @@ class _Match:
         return min(max(n.lower for n in near) for near in (self.near, *self.signed))
 
 
-@rule_group(
-    TG601=Explained(
-        "Joint and Cartesian way-points are consistent with the printed chain",
-        "Do printed joint angles and printed positions fit the printed table of the robot? "
-        "Positions are computed from the angles; joints that are not printed may have any angle.",
-        "Supported if they fit within rounding; inconsistent, with a warning, if no angles "
-        "reach a position, rounded or cut off. If extracted text may have lost signs of the "
-        "table, every sign is tried.",
-        "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed "
-        "position.",
-    )
+TG601 = Explained(
+    "TG601",
+    "Joint and Cartesian way-points are consistent with the printed chain",
+    "Do printed joint angles and printed positions fit the printed table of the robot? "
+    "Positions are computed from the angles; joints that are not printed may have any angle.",
+    "Supported if they fit within rounding; inconsistent, with a warning, if no angles "
+    "reach a position, rounded or cut off. If extracted text may have lost signs of the "
+    "table, every sign is tried.",
+    "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed position.",
+    basis=Basis.KINEMATICS,
 )
+
+
+@rule_group(TG601)
 def judge_kinematics(study: Study) -> Iterator[Finding]:
     """Set the joint table against the printed positions, for every reading."""
     statements = (c for c in study.case.claims if isinstance(c, StatementClaim))
@@ -80,7 +84,7 @@ def _found(study: Study) -> Iterator[Finding]:
         return
     if dh is None:
         said = "Positions of the end are printed, but no table of the robot."
-        yield _not_checkable(None, said)
+        yield TG601.finding(None, _APART, said)
         return
     for reading in study.readings:
         chains: dict[object, tuple[str, Statement]] = {}
@@ -120,7 +124,8 @@ def _compared(
             if apart
             else "the numbers of positions and way-points differ"
         )
-        return _not_checkable(rid, f"Positions cannot be compared with joint angles: {why}.")
+        said = f"Positions cannot be compared with joint angles: {why}."
+        return TG601.finding(None, _APART, said, reading=rid)
     matches = []
     for convention in dh.conventions:
         flips: list[tuple[int, ...]] = [()]
@@ -333,13 +338,11 @@ def _judged(
             kind = "other signs" if lost else "other twists" if signed else "undecided"
             said = _OPEN[kind], *nearest
     worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
-    return finding(
-        "TG601",
+    return TG601.finding(
         None,
         kind,
         *said,
         verdict=verdict,
-        basis=Basis.KINEMATICS,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
@@ -381,7 +384,3 @@ def _up(metres: float) -> str:
     if metres > 5e-4:
         return shown_bound(metres, "upper", places=3)
     return shown_bound(metres, "upper", digits=1)
-
-
-def _not_checkable(rid: str | None, message: str) -> Finding:
-    return finding("TG601", None, "not set beside", message, basis=Basis.KINEMATICS, reading=rid)

@@ -12,45 +12,52 @@ from ..roots import SUM
 from ..rounding import Agreement, agreement, either, hull, meet
 from ..stated import RowClaim
 from ..study import Study
-from .rule_group import ON_DIGITS, Explained, finding, rule_group
+from .rule_group import ON_DIGITS, Explained, rule_group
 
-
-@rule_group(
-    TG101=Explained(
-        "A printed total is the sum of its printed parts",
-        "Do the printed durations of the segments add up to the printed total? Every printed "
-        "number is taken as rounded to its digits.",
-        "Supported if some values that round to the digits add up to the total; refuted, with "
-        "severity error, if none do. " + ON_DIGITS,
-        "The durations 1.20, 0.85 and 1.10 s add up to between 3.135 and 3.165 s. A printed "
-        "total of 3.15 s is supported, 3.51 s is refuted, and the report says that two "
-        "exchanged digits would explain it.",
-    ),
-    TG102=Explained(
-        "Printed longest durations are the longest of the printed rows",
-        "If the joints share the longest duration of each segment, are these printed durations "
-        "the longest in the rows of the joints?",
-        "Supported if they are; otherwise refuted, naming each segment that differs.",
-        "Joint 1 prints 0.90 and 1.30 s, joint 2 prints 1.10 and 1.20 s. The longest are 1.10 "
-        "and 1.30 s; 1.10 and 1.20 s would be refuted.",
-    ),
-    TG106=Explained(
-        "Unrelated columns do not repeat each other's digits",
-        "Do way-points repeat the digits of an unrelated column, such as lengths of links?",
-        "A warning: the digits alone do not show which column, if either, is wrong. No claim is "
-        "judged by it.",
-        "Three of four angles of joint 2 print the digits of the link offsets: 0.4318, "
-        "0.1501, 0.4331.",
-    ),
-    TG109=Explained(
-        "As many durations are printed as there are segments",
-        "Are as many durations printed as the curve has segments?",
-        "A warning if not: no motion can be built from them. A slip in the case file has the same "
-        "effect, so rule that out first.",
-        "Five way-points make four segments, and the table prints three durations.",
-    ),
-    without_waypoints=True,
+TG101 = Explained(
+    "TG101",
+    "A printed total is the sum of its printed parts",
+    "Do the printed durations of the segments add up to the printed total? Every printed "
+    "number is taken as rounded to its digits.",
+    "Supported if some values that round to the digits add up to the total; refuted, with "
+    "severity error, if none do. " + ON_DIGITS,
+    "The durations 1.20, 0.85 and 1.10 s add up to between 3.135 and 3.165 s. A printed "
+    "total of 3.15 s is supported, 3.51 s is refuted, and the report says that two "
+    "exchanged digits would explain it.",
+    basis=Basis.DIGITS,
 )
+TG102 = Explained(
+    "TG102",
+    "Printed longest durations are the longest of the printed rows",
+    "If the joints share the longest duration of each segment, are these printed durations "
+    "the longest in the rows of the joints?",
+    "Supported if they are; otherwise refuted, naming each segment that differs.",
+    "Joint 1 prints 0.90 and 1.30 s, joint 2 prints 1.10 and 1.20 s. The longest are 1.10 "
+    "and 1.30 s; 1.10 and 1.20 s would be refuted.",
+    basis=Basis.DIGITS,
+)
+TG106 = Explained(
+    "TG106",
+    "Unrelated columns do not repeat each other's digits",
+    "Do way-points repeat the digits of an unrelated column, such as lengths of links?",
+    "A warning: the digits alone do not show which column, if either, is wrong. No claim is "
+    "judged by it.",
+    "Three of four angles of joint 2 print the digits of the link offsets: 0.4318, 0.1501, 0.4331.",
+    basis=Basis.DIGITS,
+    decides=False,
+)
+TG109 = Explained(
+    "TG109",
+    "As many durations are printed as there are segments",
+    "Are as many durations printed as the curve has segments?",
+    "A warning if not: no motion can be built from them. A slip in the case file has the same "
+    "effect, so rule that out first.",
+    "Five way-points make four segments, and the table prints three durations.",
+    basis=Basis.COUNT,
+)
+
+
+@rule_group(TG101, TG102, TG106, TG109, without_waypoints=True)
 def judge_digits(study: Study) -> Iterator[Finding]:
     """Findings of TG101, TG102, TG106 and TG109."""
     yield from _sums(study)
@@ -97,7 +104,7 @@ _KINDS = {
 
 
 def compared(
-    rule: str,
+    rule: Explained,
     claim: AnyClaim,
     printed: Printed,
     rounded: Interval,
@@ -154,14 +161,12 @@ def compared(
                 f"{what} is {plain} {unit} digit by digit, and {computed} for all values that "
                 f"round to the digits; rounding explains the printed {digits}."
             )
-    return finding(
-        rule,
+    return rule.finding(
         claim,
         f"{_KINDS[kind]} in {unit}",
         message,
         severity=severity,
         verdict=verdict,
-        basis=Basis.DIGITS,
         printed=digits,
         computed=computed,
         root="" if verdict is ClaimVerdict.SUPPORTED else root,
@@ -209,7 +214,7 @@ def _sum_beside(
     parts = [(d, Fraction(1)) for d in claim.durations] + [(d, Fraction(1, 2)) for d in halves]
     plain = sum((d.fraction * share for d, share in parts), Fraction(0))
     return compared(
-        "TG101",
+        TG101,
         claim,
         total,
         summed((d.interval, share) for d, share in parts),
@@ -233,15 +238,13 @@ def _lengths(study: Study) -> Iterator[Finding]:
             if len(claim.durations) == segments:
                 continue
             count = _many(len(claim.durations), "duration")
-            yield finding(
-                "TG109",
+            yield TG109.finding(
                 claim,
                 "other length",
                 f"{claim.where} prints {count}, but the curve through the way-points has "
                 f"{_many(segments, 'segment')}, so no motion can be built from them.",
                 "If the paper prints another number, correct the case file.",
                 verdict=ClaimVerdict.INCONSISTENT,
-                basis=Basis.COUNT,
                 reading=rid,
                 printed=count,
                 computed=_many(segments, "segment"),
@@ -269,13 +272,11 @@ def _maxima(study: Study) -> Iterator[Finding]:
         if wrong:
             listed = "; ".join(wrong)
             message = f"The printed longest durations do not follow from the rows: {listed}"
-        yield finding(
-            "TG102",
+        yield TG102.finding(
             claim,
             "others" if wrong else "longest",
             message,
             verdict=ClaimVerdict.REFUTED if wrong else ClaimVerdict.SUPPORTED,
-            basis=Basis.DIGITS,
             printed=", ".join(str(d) for d in claim.durations),
         )
 
@@ -294,8 +295,7 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                 w.text for w in same if len(w.text.lstrip("+-").replace(".", "").lstrip("0")) >= 4
             ]
             if len(repeated) >= 2:
-                yield finding(
-                    "TG106",
+                yield TG106.finding(
                     None,
                     "repeated digits",
                     f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
@@ -303,8 +303,6 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                     f"{where}, which states another quantity.",
                     "The digits alone do not show whether one of the columns is wrong.",
                     severity=Severity.WARNING,
-                    basis=Basis.DIGITS,
-                    decides=False,
                     doubts=(label,),
                     printed=", ".join(repeated),
                 )

@@ -13,31 +13,34 @@ from ....problem.robots import Chain, Equation, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import meet
 from ..study import Study
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
-
-@rule_group(
-    TG110=Explained(
-        "A joint varies most among the printed joints if the text says so",
-        "Does a joint cover the range that the text describes? Its largest and smallest printed "
-        "angles are compared with those of the other printed joints.",
-        "If the joint is said to vary most: supported if all joints are printed and no range is "
-        "larger; inconsistent, with a warning, if one is larger however the digits were rounded. "
-        "If it is only said to vary much, nothing is decided, because no text says how much that "
-        "is.",
-        "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
-        "within 4.6 rad.",
-    ),
-    TG602=Explained(
-        "A position lies above another if the text says so",
-        "Does a position lie above another if the text says so?",
-        "Supported if the two agree in the plane within rounding and the first is higher. "
-        "Otherwise not checkable, with both distances: signs are easily lost in print and in "
-        "extracted text.",
-        "“Above the table” lies 0.30 m beside the table; with another sign of y it would be 0 m.",
-    ),
-    without_waypoints=True,
+TG110 = Explained(
+    "TG110",
+    "A joint varies most among the printed joints if the text says so",
+    "Does a joint cover the range that the text describes? Its largest and smallest printed "
+    "angles are compared with those of the other printed joints.",
+    "If the joint is said to vary most: supported if all joints are printed and no range is "
+    "larger; inconsistent, with a warning, if one is larger however the digits were rounded. "
+    "If it is only said to vary much, nothing is decided, because no text says how much that "
+    "is.",
+    "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
+    "within 4.6 rad.",
+    basis=Basis.DIGITS,
 )
+TG602 = Explained(
+    "TG602",
+    "A position lies above another if the text says so",
+    "Does a position lie above another if the text says so?",
+    "Supported if the two agree in the plane within rounding and the first is higher. "
+    "Otherwise not checkable, with both distances: signs are easily lost in print and in "
+    "extracted text.",
+    "“Above the table” lies 0.30 m beside the table; with another sign of y it would be 0 m.",
+    basis=Basis.DIGITS,
+)
+
+
+@rule_group(TG110, TG602, without_waypoints=True)
 def judge_joints(study: Study) -> Iterator[Finding]:
     """Findings of TG110 and TG602."""
     for claim in study.claims:
@@ -56,7 +59,8 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     ranges = {label: _range(numbers) for label, numbers in printed.items() if numbers}
     own = ranges.pop(str(claim.joint), None)
     if own is None:
-        return _finding(claim, "not printed", [f"No angles of joint {claim.joint} are printed."])
+        return TG110.finding(claim, "not printed", f"No angles of joint {claim.joint} are printed.")
+    computed = f"{_middle(*own):.2f} in the printed unit"
     if claim.joint is not None and statement.unit("position") is None:
         listed = ", ".join(dict.fromkeys(statement.units.position or ()))
         said = [
@@ -65,7 +69,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
             f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed "
             "unit).",
         ]
-        return _finding(claim, "other units", said, own=own)
+        return TG110.finding(claim, "other units", *said, computed=computed)
     shown = " and ".join(
         f"{_middle(least, most):.2f} of joint {label}" for label, (least, most) in ranges.items()
     )
@@ -89,7 +93,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
         said.append(f"Joint{plural} {', '.join(more)} var{'y' if plural else 'ies'} more.")
     elif not missing and ranges and all(most <= own[0] for _, most in ranges.values()):
         verdict = ClaimVerdict.SUPPORTED
-    return _finding(claim, kind, [*said, *aside], verdict, own)
+    return TG110.finding(claim, kind, *said, *aside, verdict=verdict, computed=computed)
 
 
 def _range(numbers: list[Printed]) -> tuple[Fraction, Fraction]:
@@ -120,33 +124,14 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     plane = zip(upper.values[:2], lower.values[:2], strict=True)
     same = all(meet(a.interval, b.interval) for a, b in plane)
     if same and rise.lower > floor.upper:
-        return _finding(claim, "beside and above", said, ClaimVerdict.SUPPORTED)
+        return TG602.finding(claim, "beside and above", *said, verdict=ClaimVerdict.SUPPORTED)
     least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
     if least[0] < beside[0]:
         said.append(
             f"With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
             f"{upper.unit}; signs may be lost in the text, so nothing is decided."
         )
-    return _finding(claim, "beside and above", said)
-
-
-def _finding(
-    claim: StatementClaim,
-    kind: str,
-    said: list[str],
-    verdict: ClaimVerdict = ClaimVerdict.NOT_CHECKABLE,
-    own: tuple[Fraction, Fraction] | None = None,
-) -> Finding:
-    """What is said of a statement, and the range of its joint where one is computed."""
-    return finding(
-        "TG602" if claim.checks == "above" else "TG110",
-        claim,
-        kind,
-        *said,
-        verdict=verdict,
-        basis=Basis.DIGITS,
-        computed=None if own is None else f"{_middle(*own):.2f} in the printed unit",
-    )
+    return TG602.finding(claim, "beside and above", *said)
 
 
 def _beside(
@@ -161,18 +146,20 @@ def _beside(
     return sqrt(sum(x * x for x in away)), changed
 
 
-@rule_group(
-    TG603=Explained(
-        "Printed kinematic equations hold on the printed chain",
-        "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
-        "random joint angles.",
-        "Supported if all hold as printed. Otherwise not checkable, with the correction that "
-        "would make each of them hold: signs, exponents and indices are easily lost in extracted "
-        "text.",
-        "13 of 16 equations hold; another holds once a missing plus sign is added.",
-    ),
-    without_waypoints=True,
+TG603 = Explained(
+    "TG603",
+    "Printed kinematic equations hold on the printed chain",
+    "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
+    "random joint angles.",
+    "Supported if all hold as printed. Otherwise not checkable, with the correction that "
+    "would make each of them hold: signs, exponents and indices are easily lost in extracted "
+    "text.",
+    "13 of 16 equations hold; another holds once a missing plus sign is added.",
+    basis=Basis.KINEMATICS,
 )
+
+
+@rule_group(TG603, without_waypoints=True)
 def judge_equations(study: Study) -> Iterator[Finding]:
     """One finding for the statement that the equations of the file hold.
 
@@ -209,13 +196,11 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
         said.append(f"These do not hold as printed: {', '.join(apart)}.")
     if mended or apart:
         said.append("It is unknown whether the paper or the extraction lost what is missing.")
-    return finding(
-        "TG603",
+    return TG603.finding(
         claim,
         "in part" if mended or apart else "all",
         *said,
         verdict=ClaimVerdict.NOT_CHECKABLE if mended or apart else ClaimVerdict.SUPPORTED,
-        basis=Basis.KINEMATICS,
         printed="; ".join(equation.where for equation in equations),
         computed=f"{len(held)} hold as printed, {len(mended)} once corrected",
     )

@@ -22,32 +22,36 @@ from ..rounding import either, hull, meet
 from ..stated import RowClaim, printed_total
 from ..study import Study
 from .printed_digits import end_blends, raised, summed
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
 _Timed = RowClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
 
 
-@rule_group(
-    TG104=Explained(
-        "Tables under different names print different digits",
-        "Do two tables of different algorithms print the same numbers, digit by digit?",
-        "Inconsistent, with severity error, if the paper says elsewhere that the two results "
-        "differ; otherwise information. Two algorithms that both find the optimum print the same "
-        "numbers; the report says so if that explains it.",
-        "Table 2 (standard algorithm) and Table 3 (improved algorithm) agree in all 28 "
-        "numbers, yet the abstract says that the improved one is 10 % faster.",
-    ),
-    TG105=Explained(
-        "Two places that print the same total agree",
-        "If one total is printed in two places, do the two agree?",
-        "Inconsistent if no value rounds to both; the audit does not choose between them. "
-        "Totals that the file distinguishes by method, curve, table or improvement are not "
-        "compared.",
-        "The abstract prints 3.9 s and the table 3.52 s for the same motion.",
-    ),
-    without_waypoints=True,
+TG104 = Explained(
+    "TG104",
+    "Tables under different names print different digits",
+    "Do two tables of different algorithms print the same numbers, digit by digit?",
+    "Inconsistent, with severity error, if the paper says elsewhere that the two results "
+    "differ; otherwise information. Two algorithms that both find the optimum print the same "
+    "numbers; the report says so if that explains it.",
+    "Table 2 (standard algorithm) and Table 3 (improved algorithm) agree in all 28 "
+    "numbers, yet the abstract says that the improved one is 10 % faster.",
+    basis=Basis.DIGITS,
 )
+TG105 = Explained(
+    "TG105",
+    "Two places that print the same total agree",
+    "If one total is printed in two places, do the two agree?",
+    "Inconsistent if no value rounds to both; the audit does not choose between them. "
+    "Totals that the file distinguishes by method, curve, table or improvement are not "
+    "compared.",
+    "The abstract prints 3.9 s and the table 3.52 s for the same motion.",
+    basis=Basis.DIGITS,
+)
+
+
+@rule_group(TG104, TG105, without_waypoints=True)
 def judge_tables(study: Study) -> Iterator[Finding]:
     """Findings of TG104 and TG105."""
     yield from _tables_alike(study)
@@ -138,8 +142,7 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
             f"agreement: "
             "two algorithms that both find the optimum print the same numbers."
         )
-        yield finding(
-            "TG104",
+        yield TG104.finding(
             None,
             "differ elsewhere" if apart else "optimum" if optimal else "alike",
             f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
@@ -280,13 +283,11 @@ def _same_total(study: Study) -> Iterator[Finding]:
         others = agreeing or [c for c in found if end_blends(study, c) is not None]
         if not others:
             if claim.algorithm is not None and not found:
-                yield finding(
-                    "TG105",
+                yield TG105.finding(
                     claim,
                     "printed once",
                     "This total of a named method is printed only once, so nothing printed can "
                     "contradict it.",
-                    basis=Basis.DIGITS,
                     printed=str(claim.value),
                 )
             continue
@@ -309,14 +310,12 @@ def _same_total(study: Study) -> Iterator[Finding]:
         elif not agreeing and weight is not None:
             verdict, severity = ClaimVerdict.INCONSISTENT, weight
         clash = verdict is ClaimVerdict.INCONSISTENT
-        yield finding(
-            "TG105",
+        yield TG105.finding(
             claim,
             kind,
             message,
             severity=severity,
             verdict=verdict,
-            basis=Basis.DIGITS,
             printed=printed,
             computed=shown,
             follows=doubted(study, [other]) if clash else (),

@@ -12,7 +12,7 @@ from ....problem.curves import vertex_matrix
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..rounding import Agreement, agreement, hull
 from ..study import Study
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
 
 @dataclass(frozen=True)
@@ -54,16 +54,19 @@ class Vertex:
         return self.agreement is Agreement.ROUNDING
 
 
-@rule_group(
-    TG205=Explained(
-        "Printed control vertices follow from the printed way-points",
-        "Do printed control vertices follow from the printed way-points?",
-        "Supported if each lies within the interval that the rounding of the way-points allows, "
-        "otherwise refuted; not checkable on curves other than the uniform cubic B-spline.",
-        "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
-        "supported and 0.4381 refuted.",
-    )
+TG205 = Explained(
+    "TG205",
+    "Printed control vertices follow from the printed way-points",
+    "Do printed control vertices follow from the printed way-points?",
+    "Supported if each lies within the interval that the rounding of the way-points allows, "
+    "otherwise refuted; not checkable on curves other than the uniform cubic B-spline.",
+    "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
+    "supported and 0.4381 refuted.",
+    basis=Basis.DIGITS,
 )
+
+
+@rule_group(TG205)
 def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem.
 
@@ -93,13 +96,11 @@ def has_vertices(statement: Statement) -> bool:
 def _found(claim: ControlVerticesClaim, statement: Statement) -> Finding:
     if has_vertices(statement):
         return _judged(claim, vertices(claim, statement), statement.unit("position") is None)
-    return finding(
-        "TG205",
+    return TG205.finding(
         claim,
         "other curve",
         "Control vertices are computed only for the uniform cubic B-spline; the case has "
         f"another curve ({statement.declaration.family}).",
-        basis=Basis.DIGITS,
     )
 
 
@@ -159,13 +160,11 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
             f"of the printed way-points allows on the uniform cubic B-spline{widest}."
         )
     weight = {"severity": Severity.WARNING} if kind == "cut off" else {}
-    return finding(
-        "TG205",
+    return TG205.finding(
         claim,
         kind,
         message,
         verdict=verdict,
-        basis=Basis.DIGITS,
         computed=f"{len(found) - len(outside)} of {len(found)} inside",
         **weight,
     )

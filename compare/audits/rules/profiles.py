@@ -47,8 +47,8 @@ from ..roots import NO_PROFILE
 from ..rounding import FEW_ROUNDINGS, meet
 from ..stated import place_of_value
 from ..study import Study
-from .one_way import judge_one_way
-from .rule_group import Explained, rule_group
+from .one_way import TG304, judge_one_way
+from .rule_group import rule_group
 
 _Profiled = TotalTimeClaim | PhasesClaim
 
@@ -100,21 +100,7 @@ class _Asked:
         return profile_called([self.profile])
 
 
-@rule_group(
-    TG304=Explained(
-        "Printed numbers of a profile agree with the profile that the limits allow",
-        "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
-        "limits allow between the states at its ends? Are the phases, peaks and values those of "
-        "this profile?",
-        "Supported within rounding, else inconsistent: the paper may have meant another profile. "
-        "Without way-points, several totals are supported if one way serves them all. "
-        "Not checkable if the shortest total jumps within the rounding, or for several joints "
-        "between moving ends.",
-        "A motion of 140° within 150 °/s, 70 °/s² and 70 °/s³ takes 4 s if the jerk is constant "
-        "in phases.",
-    ),
-    without_waypoints=True,
-)
+@rule_group(TG304, without_waypoints=True)
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
     yield from judge_one_way(study)
@@ -142,7 +128,7 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
 
 
 def _unknown(asked: _Asked, why: str) -> Finding:
-    return asked.row.finding("TG304", "other profile", why, basis=Basis.CHECK, claim=asked.claim.id)
+    return _found(asked, ClaimVerdict.NOT_CHECKABLE, "other profile", why, basis=Basis.CHECK)
 
 
 def _not_computed(asked: _Asked) -> str | None:
@@ -273,8 +259,7 @@ def _total_beside(asked: _Asked) -> Finding:
 
 
 def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, *said: str, **facts: Any) -> Finding:
-    given = {"basis": Basis.COMPUTED, "claim": asked.claim.id, "verdict": verdict} | facts
-    return asked.row.finding("TG304", kind, *said, **given)
+    return TG304.finding(asked.row, kind, *said, claim=asked.claim.id, verdict=verdict, **facts)
 
 
 def _ends(number: Measured) -> tuple[float, float]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import chain
-
-from ...documents import Rule
+from ...documents import Basis, Rule
 from .along_path import judge_along_paths
 from .compared_before import cite_comparisons
 from .condition_count import judge_counts
@@ -55,21 +53,20 @@ GROUPS = (
 )
 """In the order in which their findings of one severity and id stand; a new rule adds its line."""
 
-NOT_COMPUTED = "TG502"
+NOT_COMPUTED = Explained(
+    "TG502",
+    "Not computed for this problem; the message says why",
+    "What could not be computed here, and why?",
+    "Not checkable, with the reason.",
+    "The solver found no motion within the limits, so no distance can be given.",
+    basis=Basis.CHECK,
+)
 """Stands instead of a finding that a group could not compute; the audit itself says it."""
 
-_AUDIT = {
-    NOT_COMPUTED: Explained(
-        "Not computed for this problem; the message says why",
-        "What could not be computed here, and why?",
-        "Not checkable, with the reason.",
-        "The solver found no motion within the limits, so no distance can be given.",
-    )
-}
-"""What no group finds."""
+_EVERY = (NOT_COMPUTED, *(rule for group in GROUPS for rule in group.rules.values()))
 
-EXPLAINED = dict(sorted(chain(_AUDIT.items(), *(group.rules.items() for group in GROUPS))))
+EXPLAINED = {rule.id: rule for rule in sorted(_EVERY, key=lambda one: one.id)}
 """Every rule by its id."""
 
-RULES = tuple(Rule(id_, one.title) for id_, one in EXPLAINED.items())
+RULES = tuple(Rule(one.id, one.title) for one in EXPLAINED.values())
 """Their ids and titles."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from itertools import chain
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,30 +42,39 @@ _TOLERANCES = (SETTLED, 5 * SETTLED)
 """Shares of the final total within which a run counts as converged; a claim names none."""
 
 
-@rule_group(
-    TG401=Explained(
-        "An improvement compared with the spread over seeds",
-        "How likely is a printed improvement if each algorithm is run once? Both are run "
-        "again with many seeds.",
-        INFORMS
-        + " Operators, seeds and some settings are not printed, so a replay is never a proof.",
-        "In 100 runs each, one run of B beats one run of A by at least 10 % in 4 % of the pairs.",
-    ),
-    TG402=Explained(
-        "A printed total compared with replays of its algorithm",
-        "Where does a printed total lie among runs of the algorithm that found it?",
-        INFORMS + " The report names the settings under which the printed total is typical.",
-        "3.53 s is printed. With an inertia weight of 0.65 the median is 3.30 s, with 1.0 it "
-        "is 3.51 s.",
-    ),
-    TG403=Explained(
-        "Convergence within a number of iterations, compared with replays",
-        "Do runs of the algorithm settle within the printed number of iterations?",
-        INFORMS + " The share of runs is given at two tolerances, because papers name none.",
-        "By iteration 60, 27 % of the runs are within 0.1 % of their final value, and 86 % "
-        "within 0.5 %.",
-    ),
+TG401 = Explained(
+    "TG401",
+    "An improvement compared with the spread over seeds",
+    "How likely is a printed improvement if each algorithm is run once? Both are run "
+    "again with many seeds.",
+    INFORMS + " Operators, seeds and some settings are not printed, so a replay is never a proof.",
+    "In 100 runs each, one run of B beats one run of A by at least 10 % in 4 % of the pairs.",
+    basis=Basis.REPLAY,
+    decides=False,
 )
+TG402 = Explained(
+    "TG402",
+    "A printed total compared with replays of its algorithm",
+    "Where does a printed total lie among runs of the algorithm that found it?",
+    INFORMS + " The report names the settings under which the printed total is typical.",
+    "3.53 s is printed. With an inertia weight of 0.65 the median is 3.30 s, with 1.0 it "
+    "is 3.51 s.",
+    basis=Basis.REPLAY,
+    decides=False,
+)
+TG403 = Explained(
+    "TG403",
+    "Convergence within a number of iterations, compared with replays",
+    "Do runs of the algorithm settle within the printed number of iterations?",
+    INFORMS + " The share of runs is given at two tolerances, because papers name none.",
+    "By iteration 60, 27 % of the runs are within 0.1 % of their final value, and 86 % "
+    "within 0.5 %.",
+    basis=Basis.REPLAY,
+    decides=False,
+)
+
+
+@rule_group(TG401, TG402, TG403)
 def judge_replays(study: Study) -> Iterator[Finding]:
     """Findings of TG401 to TG403: information, for operators and seeds are not printed."""
     for claim in study.claims:
@@ -78,14 +86,6 @@ def judge_replays(study: Study) -> Iterator[Finding]:
             yield from _convergence(study, claim)
         elif isinstance(claim, StatementClaim) and claim.against is not None:
             yield from _compared(study, claim, claim.against)
-
-
-def _found(
-    study: Study, rule: str, claim: AnyClaim, pair: Pair, printed: str | None = None
-) -> Callable[..., Finding]:
-    """A finding of a rule about replays of a claim's algorithms, in want of what it says."""
-    facts: dict[str, Any] = {"basis": Basis.REPLAY, "decides": False, "printed": printed}
-    return partial(PrintedRow(study, claim, pair).finding, rule, **facts)
 
 
 def _pairs(study: Study, claim: AnyClaim) -> list[Pair]:
@@ -136,8 +136,8 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
                 f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
-        found = _found(study, "TG401", claim, pair, f"{claim.percent} %")
-        yield found("runs", *said, computed=f"median {percent(median)}")
+        known = {"printed": f"{claim.percent} %", "computed": f"median {percent(median)}"}
+        yield TG401.finding(PrintedRow(study, claim, pair), "runs", *said, **known)
 
 
 def interval_words(low: float, high: float) -> str:
@@ -169,7 +169,8 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             for tolerance in _TOLERANCES
             for name, found in runs.items()
         )
-        yield _found(study, "TG401", claim, pair)(
+        yield TG401.finding(
+            PrintedRow(study, claim, pair),
             "runs",
             f"In {seeds} independent runs each under the listed choices, {own} reaches "
             f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
@@ -190,7 +191,7 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         pair = row.pair
         if claim.joint is not None and len(study.problem(pair).joints) > 1:
             continue
-        found = _found(study, "TG402", claim, pair, shown)
+        found = partial(TG402.finding, row, printed=shown)
         runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
             yield found("not replayed", study.unreplayed(claim.algorithm, pair) or "")
@@ -252,7 +253,8 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
     if claim.algorithm is None:
         return
     for pair in _pairs(study, claim):
-        found = _found(study, "TG403", claim, pair, f"{claim.iterations} iterations")
+        row = PrintedRow(study, claim, pair)
+        found = partial(TG403.finding, row, printed=f"{claim.iterations} iterations")
         runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
             yield found("not replayed", study.unreplayed(claim.algorithm, pair) or "")

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ....problem.cases import Claim
-from ...documents import Finding
+from ...documents import Basis, Finding
+from ..printed_row import PrintedRow
 from ..study import Study
 
 ON_DIGITS = "A claim that fits only if digits were cut off instead of rounded gets a warning."
@@ -21,10 +22,12 @@ Judge = Callable[[Study], Iterator[Finding]]
 
 @dataclass(frozen=True)
 class Explained:
-    """A rule for a reader who has met its id in a report.
+    """A rule for a reader who has met its id in a report, and what its findings have in common.
 
     Attributes
     ----------
+    id : str
+        Permanent; an id is never reused.
     title : str
         What the rule looks at, in a table of all rules.
     asks : str
@@ -33,22 +36,38 @@ class Explained:
         What it may say of a claim, and what it never says.
     example : str
         With made-up numbers.
+    basis : Basis
+        What its findings rest on, where they do not say.
+    decides : bool
+        Whether its findings enter verdicts, where they do not say.
     """
 
+    id: str
     title: str
     asks: str
     concludes: str
     example: str
+    basis: Basis
+    decides: bool = True
+
+    def finding(
+        self, about: PrintedRow[Any] | Claim | None, kind: str, *sentences: str, **facts: Any
+    ) -> Finding:
+        """A finding on a row, a claim or none; a sentence may be empty."""
+        given: dict[str, Any] = {"rule": self.id, "basis": self.basis, "decides": self.decides}
+        if isinstance(about, PrintedRow):
+            given |= {"problem": about.problem, "reading": about.reading}
+        claim = about.claim if isinstance(about, PrintedRow) else about
+        given["claim"] = None if claim is None else claim.id
+        return Finding(kind=kind, sentences=sentences, **given | facts)
 
 
 @dataclass(frozen=True)
 class RuleGroup:
-    """Rules that one function judges.
+    """Rules that one function judges, by their ids.
 
     Attributes
     ----------
-    rules : dict
-        By their permanent ids; an id is never reused.
     without_waypoints : bool
         Whether it says something while the way-points are missing.
     """
@@ -62,14 +81,6 @@ class RuleGroup:
         return self.judge(study)
 
 
-def rule_group(
-    *, without_waypoints: bool = False, **rules: Explained
-) -> Callable[[Judge], RuleGroup]:
-    """Make a function the judge of rules, each under its permanent id with its explanation."""
-    return lambda judge: RuleGroup(judge, rules, without_waypoints)
-
-
-def finding(rule: str, claim: Claim | None, kind: str, *sentences: str, **facts: Any) -> Finding:
-    """A finding of a rule on a claim, or on none; a sentence may be empty."""
-    about = None if claim is None else claim.id
-    return Finding(rule=rule, claim=about, kind=kind, sentences=sentences, **facts)
+def rule_group(*rules: Explained, without_waypoints: bool = False) -> Callable[[Judge], RuleGroup]:
+    """Make a function the judge of rules."""
+    return lambda judge: RuleGroup(judge, {one.id: one for one in rules}, without_waypoints)

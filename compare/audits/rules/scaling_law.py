@@ -17,20 +17,23 @@ from ..roots import OPTIMAL
 from ..rounding import FEW_ROUNDINGS, ROUNDING
 from ..stated import RowClaim, called_under, other_objective
 from ..study import Study
-from .rule_group import Explained, finding, rule_group
+from .rule_group import Explained, rule_group
 
-
-@rule_group(
-    TG301=Explained(
-        "Totals of one path under two velocity limits obey the scaling law",
-        "If one path is timed under two velocity limits and nothing else is limited, the shortest "
-        "time multiplied by the limit is constant. Do the two printed totals obey this law?",
-        "Refuted if both are called optimal and one is longer than the law allows, with the "
-        "rounding of way-points, limits and durations taken into account.",
-        "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "
-        "A printed optimum of 1.60 s at 110 °/s is therefore not the shortest.",
-    )
+TG301 = Explained(
+    "TG301",
+    "Totals of one path under two velocity limits obey the scaling law",
+    "If one path is timed under two velocity limits and nothing else is limited, the shortest "
+    "time multiplied by the limit is constant. Do the two printed totals obey this law?",
+    "Refuted if both are called optimal and one is longer than the law allows, with the "
+    "rounding of way-points, limits and durations taken into account.",
+    "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "
+    "A printed optimum of 1.60 s at 110 °/s is therefore not the shortest.",
+    basis=Basis.IDENTITY,
+    decides=False,
 )
+
+
+@rule_group(TG301)
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
     claims = [c for c in study.claims if isinstance(c, RowClaim)]
@@ -117,8 +120,7 @@ def _stretched(
             "account"
         )
     places = [called_under(study.case, row.claim, row.problem) for row in (slow, fast)]
-    beside = finding(
-        "TG301",
+    beside = TG301.finding(
         target,
         "not both shortest",
         "With velocity limits only, the shortest time multiplied by the limit is constant, so "
@@ -128,8 +130,6 @@ def _stretched(
         f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is "
         "longer.",
         verdict=ClaimVerdict.INCONSISTENT,
-        basis=Basis.IDENTITY,
-        decides=False,
         problem=fast.problem,
         reading=reading,
         printed=shown,
