@@ -1,6 +1,6 @@
 from .card_errors import plainly as plainly
 from .case_audit import AuditReport as AuditReport, CaseAudit as CaseAudit, audit as audit
-from .fixed_ratios import at_ratios as at_ratios, planned_apart as planned_apart
+from .digit_ranges import at_ratios as at_ratios, planned_apart as planned_apart
 from .intervals import AuditOptions as AuditOptions
 from .paper_runs import searched_for as searched_for
 from .printed_row import PrintedRow as PrintedRow, printed_rows as printed_rows

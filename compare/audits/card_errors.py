@@ -17,8 +17,8 @@ from ..documents import (
     capital,
     quoted,
 )
-from .roots import NO_PROFILE, TABLES
 from .stated import RowClaim, at_place, place
+from .words import NO_PROFILE, TABLES
 
 
 def plainly(

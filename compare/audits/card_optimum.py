@@ -18,20 +18,17 @@ from ..documents import (
     count_words,
     ranged,
 )
-from .amounts import percent, seconds
-from .card_limits import FEW
-from .digit_ranges import all_exact, optimum_range
-from .fixed_ratios import at_ratios, off_ratios, planned_apart
+from .digit_ranges import all_exact, at_ratios, off_ratios, optimum_range, planned_apart
 from .named_profiles import profile_called
-from .own_result import bare_totals, own_result
+from .own_result import bare_totals, contradicts_its_parts, other_totals, own_result
 from .path_times import along_paths
 from .printed_row import PrintedRow
 from .profile_motions import above_shortest
 from .rounding import meet, rounds_to
 from .stated import RowClaim, other_objective, printed_total
-from .stated_totals import contradicts_its_parts, other_totals
 from .study import Pair, Study, Total
 from .waterfall import stands_in
+from .words import FEW, percent, seconds
 
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""

@@ -43,9 +43,9 @@ from ..documents import (
     with_readings,
 )
 from .printed_row import rows_under
-from .roots import AGAINST
 from .stated import RowClaim
 from .study import Study
+from .words import AGAINST
 
 _RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED)
 """The weakest reference last: a verdict rests on the weakest of what stands behind it."""

@@ -8,9 +8,9 @@ from decimal import Decimal
 from ...problem.cases import AnyClaim, MaximumClaim, StatementClaim
 from ..documents import Advice, Cause, ClaimVerdict, Edit, Judgement, Severity, Urgency
 from .card_errors import plainly
-from .roots import CLAIM
 from .stated import claim_text
 from .study import Study
+from .words import CLAIM
 
 _FIXES = {
     "TG104": "Two of your tables are alike: put the right numbers into one of them.",

@@ -20,13 +20,12 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import Explanation, Finding, HeldOtherwise, Rounding, Severity, quoted
-from .changed_motions import changes_of_motion
 from .printed_row import PrintedRow
-from .roots import AGAINST, LIMITS, TABLES
 from .rules import RuleGroup, count_conditions, held_otherwise
-from .slips import Slip, durations, misprints, of_rows, totals, values
+from .slips import Slip, changes_of_motion, durations, misprints, of_rows, totals, values
 from .stated import RowClaim, place
 from .study import Pair, Study
+from .words import AGAINST, LIMITS, TABLES
 
 _OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
 """Rules that rebuild motions from printed durations."""

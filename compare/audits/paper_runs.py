@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ...nlp import problem_seal
 from ..documents import Gap, Reached, Reference, Why, known
 from ..gaps import canonical, gap, quantiles, reference_of, target_reached
-from .fixed_ratios import planned_apart
+from .digit_ranges import planned_apart
 from .study import Pair, Study
 
 RUNS_FORMAT: Literal["trajgap-paper-runs-1"] = "trajgap-paper-runs-1"

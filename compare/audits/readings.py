@@ -30,8 +30,7 @@ from ..documents import (
     under,
 )
 from ..gaps import gap, reference_of
-from .digit_ranges import implausible
-from .fixed_ratios import off_ratios
+from .digit_ranges import implausible, off_ratios
 from .printed_row import PrintedRow
 from .rules import held_otherwise, reading_clues
 from .stated import other_objective

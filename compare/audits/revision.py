@@ -26,12 +26,12 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
-from .kept_replays import Replays
+from .kept_answers import Replays
 from .printed_row import PrintedRow, rows_under
-from .roots import CLAIM, READINGS
 from .rules import in_digits, recomputed, repeated_total, summed
 from .stated import RowClaim
 from .study import Pair, Study
+from .words import CLAIM, READINGS
 
 
 def edited(case: Case, edits: Iterable[Edit]) -> Case:

@@ -45,8 +45,7 @@ from ...problem.cases import (
 )
 from ..documents import capital, noted
 from .intervals import USUAL, AuditOptions, Intervals
-from .kept_optima import AskedOptimum, KeptOptima
-from .kept_replays import KeptReplays, Replays
+from .kept_answers import AskedOptimum, KeptOptima, KeptReplays, Replays
 from .replay_settings import LISTED, spread_settings
 from .stated import (
     PATH_ALONE,

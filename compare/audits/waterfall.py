@@ -29,15 +29,14 @@ from ..documents import (
     enumerated,
     known,
 )
-from .amounts import seconds
-from .digit_ranges import optimum_range
-from .fixed_ratios import off_ratios, planned_apart
+from .digit_ranges import off_ratios, optimum_range, planned_apart
 from .own_result import bare_totals, own_result
 from .path_times import path_time
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS
 from .stated import RowClaim, other_objective, timed_along_path
 from .study import Pair, Study
+from .words import seconds
 
 
 def waterfalls(study: Study) -> tuple[Waterfall, ...]:

@@ -37,6 +37,8 @@ from .data_files import (
     SUITE_PREFIX as SUITE_PREFIX,
     case_files as case_files,
     check_format as check_format,
+    load_robot as load_robot,
+    robot_ids as robot_ids,
     validated as validated,
 )
 from .digits import Digits as Digits, end as end
@@ -51,7 +53,6 @@ from .load import (
     published_ids as published_ids,
 )
 from .moving_ends import end_states as end_states
-from .robot_file import load_robot as load_robot, robot_ids as robot_ids
 from .scaffolding import FileLimits as FileLimits, identity_of as identity_of, scaffold as scaffold
 from .schema import (
     AlgorithmBlock as AlgorithmBlock,

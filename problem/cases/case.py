@@ -16,12 +16,11 @@ from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .clue import AnyClue
+from .data_files import robot_file, robot_ids
 from .digits import Digits
 from .instances import InstancesBlock
 from .labels import reading_labels
-from .line import on_line
-from .overlay import overlaid
-from .robot_file import robot_file, robot_ids
+from .overlay import on_line, overlaid
 from .schema import (
     AlgorithmBlock,
     Assumption,

@@ -29,8 +29,7 @@ from ....problem import (
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
 from ...gaps import SETTLED, settled_at
-from ..kept_optima import AskedOptimum, KeptOptima
-from ..kept_replays import AskedReplay, KeptReplays
+from ..kept_answers import AskedOptimum, AskedReplay, KeptOptima, KeptReplays
 from ..study import Study
 from .result import InstancesResult, Optimum, Sample
 

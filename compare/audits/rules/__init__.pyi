@@ -1,5 +1,4 @@
 from .clues import held_otherwise as held_otherwise, reading_clues as reading_clues
-from .condition_count import count_conditions as count_conditions
 from .following_numbers import (
     in_digits as in_digits,
     recomputed as recomputed,
@@ -9,7 +8,6 @@ from .following_numbers import (
 from .linear_blends import blended as blended, judge_row as judge_row
 from .on_instances import HANDLED as HANDLED, attributed as attributed, placed as placed
 from .peaks import box_reach as box_reach, largest as largest
-from .printed_vertices import Vertex as Vertex, has_vertices as has_vertices, vertices as vertices
 from .registry import (
     EXPLAINED as EXPLAINED,
     GROUPS as GROUPS,
@@ -17,3 +15,9 @@ from .registry import (
     RULES as RULES,
 )
 from .rule_group import Explained as Explained, RuleGroup as RuleGroup
+from .stated_curve import (
+    Vertex as Vertex,
+    count_conditions as count_conditions,
+    has_vertices as has_vertices,
+    vertices as vertices,
+)

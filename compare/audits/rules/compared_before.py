@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ....problem import Case
 from ...documents import Basis, Finding, noted
-from ..amounts import percent
 from ..study import Study
+from ..words import percent
 from .rule_group import INFORMS, Explained, rule_group
 
 _RESULTS = "comparisons.json"

@@ -24,16 +24,14 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
-from ..amounts import seconds
-from ..digit_ranges import below_certified
-from ..fixed_ratios import at_ratios, off_ratios, optimum_called, planned_apart
+from ..digit_ranges import at_ratios, below_certified, off_ratios, optimum_called, planned_apart
+from ..own_result import contradicting_lows, rounded_up_low, total_excludes
 from ..printed_row import PrintedRow, named_rows, printed_rows
-from ..roots import LIMITS, OPTIMAL
 from ..rounding import ROUNDING, meet, rounds_to
 from ..stated import RowClaim, called, called_under, other_objective
-from ..stated_totals import contradicting_lows, rounded_up_low, total_excludes
 from ..study import Study, Total
-from .judged_rows import broken
+from ..words import LIMITS, OPTIMAL, seconds
+from .continuous_time import broken
 from .rule_group import INFORMS, Explained, rule_group
 
 _BELOW = (

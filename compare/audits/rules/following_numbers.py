@@ -28,7 +28,7 @@ from ..study import Study
 from .motion_numbers import measure_beside, value_beside
 from .peaks import beside
 from .printed_tables import printed_alike
-from .printed_vertices import has_vertices
+from .stated_curve import has_vertices
 
 
 def in_digits(value: Fraction | Decimal | float, like: Printed, rounding: str = "") -> str:

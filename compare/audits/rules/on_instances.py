@@ -9,7 +9,6 @@ import numpy as np
 from ....problem.cases import ConvergenceClaim
 from ...documents import Basis, Effect, Finding, Procedure, quoted, ranged
 from ...gaps import SETTLED
-from ..amounts import percent, seconds
 from ..instances import (
     MIDDLE,
     InstancesResult,
@@ -22,6 +21,7 @@ from ..instances import (
     unexamined,
 )
 from ..study import Study
+from ..words import percent, seconds
 from .rule_group import INFORMS, Explained, rule_group
 
 HANDLED = {

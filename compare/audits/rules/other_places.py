@@ -9,11 +9,11 @@ from math import inf, isfinite, log
 from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
-from ..amounts import percent
 from ..printed_row import PrintedRow, printed_rows
 from ..stated import RowClaim, called
 from ..study import Study
-from .judged_rows import broken
+from ..words import percent
+from .continuous_time import broken
 from .peaks import beside
 from .printed_tables import doubted
 from .rule_group import INFORMS, Explained, rule_group

@@ -20,11 +20,11 @@ from ....problem import (
 )
 from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..amounts import percent
 from ..printed_row import PrintedRow, printed_rows
 from ..rounding import ROUNDING, Agreement
 from ..stated import DERIVATIVES, place
 from ..study import Study
+from ..words import percent
 from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change, split
 from .rule_group import Explained, rule_group
 

@@ -8,10 +8,10 @@ from fractions import Fraction
 from ....problem import Interval, Printed
 from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
-from ..roots import SUM
 from ..rounding import Agreement, agreement, either, hull, meet
 from ..stated import RowClaim
 from ..study import Study
+from ..words import SUM
 from .rule_group import ON_DIGITS, Explained, rule_group
 
 TG101 = Explained(

@@ -17,10 +17,10 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, rows_under
-from ..roots import TABLES
 from ..rounding import either, hull, meet
 from ..stated import RowClaim, printed_total
 from ..study import Study
+from ..words import TABLES
 from .printed_digits import end_blends, raised, summed
 from .rule_group import Explained, rule_group
 

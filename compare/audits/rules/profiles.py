@@ -23,7 +23,6 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
-from ..amounts import percent, seconds
 from ..named_profiles import (
     ALGORITHM,
     NOT_SHORTEST,
@@ -43,10 +42,10 @@ from ..profile_motions import (
     out_of_range,
     profiled_limits,
 )
-from ..roots import NO_PROFILE
 from ..rounding import FEW_ROUNDINGS, meet
 from ..stated import place_of_value
 from ..study import Study
+from ..words import NO_PROFILE, percent, seconds
 from .one_way import TG304, judge_one_way
 from .rule_group import rule_group
 

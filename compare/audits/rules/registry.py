@@ -5,7 +5,6 @@ from __future__ import annotations
 from ...documents import Basis, Rule
 from .along_path import judge_along_paths
 from .compared_before import cite_comparisons
-from .condition_count import judge_counts
 from .continuous_time import judge_bare_totals, judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
@@ -19,11 +18,11 @@ from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
 from .printed_joints import judge_equations, judge_joints
 from .printed_tables import judge_tables
-from .printed_vertices import judge_vertices
 from .profiles import judge_profiles
 from .replays import judge_replays
 from .rule_group import Explained
 from .scaling_law import judge_scaling
+from .stated_curve import judge_counts, judge_vertices
 
 GROUPS = (
     judge_digits,

@@ -30,12 +30,12 @@ from ...gaps import (
     share_of_pairs,
     spread,
 )
-from ..amounts import percent, seconds
-from ..kept_replays import Replays
+from ..kept_answers import Replays
 from ..printed_row import PrintedRow, rows_under
 from ..replay_settings import LISTED
 from ..stated import other_objective
 from ..study import Pair, Study
+from ..words import percent, seconds
 from .rule_group import INFORMS, Explained, rule_group
 
 _TOLERANCES = (SETTLED, 5 * SETTLED)

@@ -10,13 +10,12 @@ import numpy as np
 from ....problem import CaseError, Problem
 from ....problem.cases import AnyClaim, Digits, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..amounts import seconds
-from ..fixed_ratios import off_ratios
+from ..digit_ranges import off_ratios
 from ..printed_row import rows_under
-from ..roots import OPTIMAL
 from ..rounding import FEW_ROUNDINGS, ROUNDING
 from ..stated import RowClaim, called_under, other_objective
 from ..study import Study
+from ..words import OPTIMAL, seconds
 from .rule_group import Explained, rule_group
 
 TG301 = Explained(

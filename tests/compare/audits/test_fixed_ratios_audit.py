@@ -13,7 +13,7 @@ from support.made_up import Numbers, paper, readings, row, sentence, total
 from trajgap.compare import ClaimVerdict
 from trajgap.compare.audits import CaseAudit, PrintedRow, waterfalls
 from trajgap.compare.audits.card_optimum import optimum_line
-from trajgap.compare.audits.fixed_ratios import off_ratios
+from trajgap.compare.audits.digit_ranges import off_ratios
 from trajgap.compare.audits.rules.scaling_law import velocity_factor
 from trajgap.compare.documents import FREED_OPTIMUM, PUBLISHED, RATIOS_OPTIMUM, Finding, Severity
 from trajgap.nlp import Evidence

@@ -9,9 +9,9 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from trajgap.compare.audits import kept_optima
+from trajgap.compare.audits import kept_answers
 from trajgap.compare.audits.instances.drawn import _ended
-from trajgap.compare.audits.kept_optima import AskedOptimum, KeptOptima
+from trajgap.compare.audits.kept_answers import AskedOptimum, KeptOptima
 from trajgap.nlp.optimum import solve
 from trajgap.problem import Interpolant, Limits, Problem, rest_to_rest, three_five_three
 from trajgap.verify import seal
@@ -31,8 +31,8 @@ ASKED = [
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> Mock:
     """Calls are of the problems that were solved since the test began."""
-    monkeypatch.setattr(kept_optima, "solve", Mock(wraps=solve))
-    return kept_optima.solve
+    monkeypatch.setattr(kept_answers, "solve", Mock(wraps=solve))
+    return kept_answers.solve
 
 
 def said(found: Any) -> list[Any]:
@@ -59,7 +59,7 @@ def test_an_answer_of_both_routes_is_judged_and_not_searched(tmp_path: Path, mad
         cold, warm = (KeptOptima(tmp_path).optimum(asked) for _ in range(2))
         (call,) = made.call_args_list
         assert call.args[0] is problem
-        assert kept_optima._left(cold) == kept_optima._left(warm)
+        assert kept_answers._left_of_optimum(cold) == kept_answers._left_of_optimum(warm)
         assert (warm.other_total is not None) == other
         KeptOptima(tmp_path).optimum(asked._replace(known=asked.known + 1e-9))
         assert made.call_args.args[0] is problem
@@ -93,7 +93,7 @@ def test_a_spoiled_file_is_searched_over_and_replaced(
     (file,) = tmp_path.glob("*.json")
     own = file.read_bytes()
     stored = json.loads(own)
-    question = {"problems": [one.words() for one in asked], "code": kept_optima.search_code()}
+    question = {"problems": [one.words() for one in asked], "code": kept_answers.search_code()}
     assert stored["seal"] == seal([question, stored["answers"]])
     SPOILED[name](stored["answers"])
     stored["seal"] = seal([question, stored["answers"]])

@@ -12,8 +12,8 @@ import pytest
 from support.command_line import IRB
 from support.studies import hurried
 from trajgap.compare import audit
-from trajgap.compare.audits import kept_replays
-from trajgap.compare.audits.kept_replays import AskedReplay, KeptReplays
+from trajgap.compare.audits import kept_answers
+from trajgap.compare.audits.kept_answers import AskedReplay, KeptReplays
 from trajgap.heuristics import GA, PSO, AskedRun, JointRuns, Run, run_asked
 from trajgap.problem import Coupling, Limits, Problem, three_five_three
 from trajgap.verify import seal
@@ -96,7 +96,7 @@ def test_another_question_is_searched(tmp_path, monkeypatch) -> None:
         fresh = [run_asked(one.algorithm, [one.question])[0] for one in asked]
         assert all(map(same, searches.runs(asked), fresh))
     assert searches.made == 1 + len(others)
-    monkeypatch.setattr(kept_replays, "code_hash", lambda *_: "another version")
+    monkeypatch.setattr(kept_answers, "code_hash", lambda *_: "another version")
     searches.runs(some())
     assert searches.made == 2 + len(others)
 
@@ -107,7 +107,7 @@ def forged(change: Callable[[list[Any]], object]) -> Callable[[bytes], bytes]:
     def spoiled(content: bytes) -> bytes:
         stored = json.loads(content)
         change(stored["answers"])
-        stored["seal"] = seal([kept_replays._question(some()), stored["answers"]])
+        stored["seal"] = seal([kept_answers._question(some()), stored["answers"]])
         return json.dumps(stored).encode()
 
     return spoiled
@@ -161,7 +161,7 @@ def test_a_run_that_no_longer_comes_out_discards_its_group(tmp_path, monkeypatch
         # As another processor may compute it: one evaluation more.
         return [replace(run, evaluations=run.evaluations + 1) for run in run_asked(method, asked)]
 
-    monkeypatch.setattr(kept_replays, "run_asked", elsewhere)
+    monkeypatch.setattr(kept_answers, "run_asked", elsewhere)
     searches.runs(some())
     assert searches.made == 2
 
@@ -190,8 +190,8 @@ def test_replays_are_the_same_groups(tmp_path, coupling) -> None:
 
 
 def test_an_audit_says_the_same_with_and_without_what_is_kept(tmp_path, monkeypatch) -> None:
-    searches = Mock(wraps=kept_replays.run_many)
-    monkeypatch.setattr(kept_replays, "run_many", searches)
+    searches = Mock(wraps=kept_answers.run_many)
+    monkeypatch.setattr(kept_answers, "run_many", searches)
     said, counts = [], []
     for where in (False, tmp_path, tmp_path):
         asked = {"problem": "limit-80", "reading": "waypoints-rad", "certify_seconds": 0}

@@ -9,7 +9,7 @@ from matplotlib.text import Annotation
 from support.drawn import sound
 from support.studies import changed, shipped
 from trajgap.compare.audits import Pair, PrintedRow
-from trajgap.compare.audits.rules.printed_vertices import Vertex
+from trajgap.compare.audits.rules.stated_curve import Vertex
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures.drawing import Picture, drawing

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.spatial.transform import Rotation
 from support.chains import chains, rotation, translation
-from trajgap.problem.cases.robot_file import load_robot
+from trajgap.problem.cases.data_files import load_robot
 from trajgap.problem.errors import TrajgapError
 from trajgap.problem.robots import inverse
 from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics

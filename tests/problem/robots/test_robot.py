@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from support.chains import chains, elementary, rotation, translation
-from trajgap.problem.cases.robot_file import load_robot
+from trajgap.problem.cases.data_files import load_robot
 from trajgap.problem.errors import TrajgapError
 from trajgap.problem.robots.chain import (
     Chain,

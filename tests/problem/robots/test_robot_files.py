@@ -12,8 +12,8 @@ import pytest
 from support.case_texts import BASE
 from support.checkout import ROOT
 from support.refusals import Refusal, each_refusal
+from trajgap.problem.cases.data_files import load_robot, parse_robot, robot_file, robot_ids
 from trajgap.problem.cases.load import load_case, parse_case
-from trajgap.problem.cases.robot_file import load_robot, parse_robot, robot_file, robot_ids
 from trajgap.problem.cases.schema import case_schema
 from trajgap.problem.errors import CaseError, TrajgapError
 from trajgap.problem.printed.rounded import Printed

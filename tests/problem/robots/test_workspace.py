@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from trajgap.problem import fit, jtraj, parse_case, rest_to_rest, scaffold
-from trajgap.problem.cases.robot_file import load_robot
+from trajgap.problem.cases.data_files import load_robot
 from trajgap.problem.errors import TrajgapError
 from trajgap.problem.robots import workspace
 from trajgap.problem.robots.cartesian_line import CartesianLine, ctraj

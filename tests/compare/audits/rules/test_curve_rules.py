@@ -16,7 +16,7 @@ from trajgap.compare.audits import Pair, PrintedRow
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.open_points import list_open_points
-from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
+from trajgap.compare.audits.rules.stated_curve import judge_vertices, vertices
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed

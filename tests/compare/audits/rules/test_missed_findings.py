@@ -6,7 +6,7 @@ import pytest
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import claim, entry, one_joint, paper, peak, row, sentence
 from trajgap.compare.audits.card_errors import plainly
-from trajgap.compare.audits.rules.condition_count import meets
+from trajgap.compare.audits.rules.stated_curve import meets
 from trajgap.compare.documents import ClaimVerdict, Severity
 
 # A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s: 0.98684 s under 1.9.

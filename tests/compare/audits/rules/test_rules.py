@@ -4,8 +4,8 @@ import pytest
 from support.findings import judged
 from support.studies import changed
 from trajgap.compare.audits.case_audit import audit
-from trajgap.compare.audits.rules.condition_count import count_conditions, judge_counts
 from trajgap.compare.audits.rules.distances import _optimal_statement
+from trajgap.compare.audits.rules.stated_curve import count_conditions, judge_counts
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.nlp import Evidence

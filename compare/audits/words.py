@@ -1,4 +1,6 @@
-"""Closed words that several modules share."""
+"""Closed words that several modules share, and how sentences write shares and times."""
+
+from __future__ import annotations
 
 from ..documents import ClaimVerdict
 
@@ -11,3 +13,15 @@ AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Verdicts that speak against a claim."""
 CLAIM, READINGS = "claim", "readings"
 """Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""
+FEW = 2
+"""Readings, places or totals that a sentence names; more are counted."""
+
+
+def percent(share: float, form: str = ".3g") -> str:
+    """A share in percent."""
+    return f"{100 * share:{form}} %"
+
+
+def seconds(value: float, form: str = ".6g") -> str:
+    """A time."""
+    return f"{value:{form}} s"
