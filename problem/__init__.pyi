@@ -2,7 +2,6 @@ from .arrays import Array as Array
 from .cases import (
     Case as Case,
     CaseFile as CaseFile,
-    DurationBox as DurationBox,
     FileLimits as FileLimits,
     case_schema as case_schema,
     compare_transcriptions as compare_transcriptions,

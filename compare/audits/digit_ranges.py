@@ -10,9 +10,9 @@ import numpy as np
 from ...nlp import Evidence, Status
 from ...nlp.optimum import apart
 from ...problem import Array, Coupling, Problem, as_piecewise, shown_bound
-from ...problem.cases import Claim, Digits
+from ...problem.cases import Claim, Digits, RoundingBox
 from .printed_row import PrintedRow, rows_under
-from .rounding import ROUNDING, RoundingBox, same_limits
+from .rounding import ROUNDING, same_limits
 from .stated import RowClaim, other_objective
 from .study import Study
 

@@ -26,9 +26,9 @@ from ...problem import (
     reachable_total,
     shown_unit,
 )
-from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
+from ...problem.cases import AnyClaim, Claim, Digits, RoundingBox, Statement
 from ..documents import UNITS, Keeping, Rounding, noted, si_unit
-from .rounding import BOXES, RoundingBox, RoundingVerdict, excludes_total, judge_rounding
+from .rounding import BOXES, RoundingVerdict, excludes_total, judge_rounding
 from .stated import RowClaim, in_words, in_words_among, own_total, place
 from .study import Pair, Study, Total
 
@@ -76,7 +76,8 @@ class PrintedRow(Generic[C]):
 
     def measured(self, number: Printed, quantity: Quantity, joint: str | None = None) -> Measured:
         """A printed number in the SI unit, with the interval that rounds to its digits."""
-        return self.study.case.measured(number, quantity, *self.pair, joint)
+        place = None if joint is None else self.statement.labels.index(joint)
+        return self.statement.si(number, quantity, joint=place)
 
     def _unit(self, quantity: str, joint: str | None) -> tuple[str | None, bool]:
         """The unit that a quantity is printed in, if one is stated; whether the joint slides."""
@@ -115,7 +116,7 @@ class PrintedRow(Generic[C]):
 
     def time(self, number: Printed) -> Measured:
         """A printed time of the claim, s, with the interval that rounds to its digits."""
-        return self.study.case.measured(number, "time", self.claim.problem, self.reading)
+        return self.study.time(number, self.claim, self.reading)
 
     def posed(self, digits: Digits = Digits.PRINTED) -> Problem:
         """The problem of the claim's durations: that of one joint, or of all joints."""
@@ -123,14 +124,14 @@ class PrintedRow(Generic[C]):
         problem = study.problem(self.pair)
         if digits is not Digits.PRINTED:
             problem = study.once(
-                ("problem", self.pair, digits), lambda: study.case.problem_at(digits, *self.pair)
+                ("problem", self.pair, digits), lambda: self.statement.problem(digits)
             )
         if label is None or label not in problem.joints:
             return problem
         return problem.joint(problem.joints.index(label))
 
     @property
-    def durations(self) -> DurationBox:
+    def durations(self) -> RoundingBox:
         """The printed durations, s, with the intervals that round to them."""
         return self.study.case.claim_durations(self.claim, self.reading)
 
@@ -153,7 +154,7 @@ class PrintedRow(Generic[C]):
         """
         found, number = [], own_total(self.claim)
         if isinstance(self.claim, RowClaim):
-            found.append(float(self._duration_box.or_cut_off().upper.sum()))
+            found.append(float(self.durations.or_cut_off().upper.sum()))
         if number is not None:
             found.append(self.time(number).cut_off().upper)
         return min(found, default=float("inf"))
@@ -261,14 +262,9 @@ class PrintedRow(Generic[C]):
         return RoundingBox(problem.waypoints, lower[:, columns], upper[:, columns])
 
     @property
-    def _duration_box(self) -> RoundingBox:
-        printed = self.durations
-        return RoundingBox(printed.value, printed.lower, printed.upper)
-
-    @property
     def boxes(self) -> tuple[RoundingBox, RoundingBox]:
         """Durations and way-points of the claim's motion, and the boxes that round to them."""
-        return self._duration_box, self.waypoint_box(self.posed())
+        return self.durations, self.waypoint_box(self.posed())
 
     def reachable(self, durations: Array) -> float | None:
         """A total (s) at which stretched ``durations`` keep the limits, however they were rounded.

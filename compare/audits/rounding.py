@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -24,7 +23,6 @@ from ...problem import (
     Check,
     CurveError,
     Interval,
-    Measured,
     Printed,
     Problem,
     TrajgapError,
@@ -32,6 +30,7 @@ from ...problem import (
     check,
     peak_gradients,
 )
+from ...problem.cases import RoundingBox as RoundingBox
 from ..documents import Rounding
 
 ROUNDING = 1e-9
@@ -86,70 +85,6 @@ def either(a: Interval, b: Interval) -> Interval:
 def hull(number: Printed) -> Interval:
     """Every value whose digits, rounded or cut off, are the printed ones."""
     return either(number.interval, number.truncated)
-
-
-@dataclass(frozen=True, eq=False)
-class RoundingBox:
-    """Printed numbers with bounds on all values that round to them.
-
-    Parameters
-    ----------
-    value, lower, upper : array_like
-        All of the same shape: durations (segments,), s, or way-points (way-points, joints), rad.
-
-    Raises
-    ------
-    TrajgapError
-        If the shapes differ, a number is not finite, or a value lies outside its bounds.
-    """
-
-    value: Array
-    lower: Array
-    upper: Array
-
-    def __post_init__(self) -> None:
-        for name in ("value", "lower", "upper"):
-            array = np.array(getattr(self, name), dtype=np.float64)
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
-        if not self.value.shape == self.lower.shape == self.upper.shape:
-            why = "value, lower and upper differ in shape; give all three the same shape"
-            raise TrajgapError(f"box: {why}")
-        if not all(np.isfinite(a).all() for a in (self.value, self.lower, self.upper)):
-            raise TrajgapError("box: a number is not finite; give finite bounds")
-        if (self.lower > self.value).any() or (self.value > self.upper).any():
-            raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
-
-    @classmethod
-    def of(cls, numbers: Iterable[Measured | Printed]) -> RoundingBox:
-        """Box of printed numbers, shape (numbers,)."""
-        ends = zip(*((one.value, one.lower, one.upper) for one in numbers), strict=True)
-        return cls(*map(np.array, ends))
-
-    @classmethod
-    def exact(cls, value: Array) -> RoundingBox:
-        """Box of width 0."""
-        return cls(value, value, value)
-
-    def inside(self) -> tuple[Array, Array]:
-        """The box with its ends moved inwards by their own rounding errors."""
-        step = 4.0 * np.maximum(np.spacing(np.abs(self.lower)), np.spacing(np.abs(self.upper)))
-        step = np.where(self.upper - self.lower > 4.0 * step, step, 0.0)
-        return self.lower + step, self.upper - step
-
-    def or_cut_off(self) -> RoundingBox:
-        """The box widened by the inputs whose further digits were cut off instead of rounded."""
-        up, down = 2.0 * (self.upper - self.value), 2.0 * (self.value - self.lower)
-        lower = np.where(self.value > 0, self.lower, self.value - down * (1.0 + ROUNDING))
-        upper = np.where(self.value < 0, self.upper, self.value + up * (1.0 + ROUNDING))
-        return RoundingBox(self.value, np.minimum(lower, self.lower), np.maximum(upper, self.upper))
-
-    @property
-    def steps(self) -> tuple[Array, Array]:
-        """Least and largest size of each step from one row to the next."""
-        low, high = self.lower[1:] - self.upper[:-1], self.upper[1:] - self.lower[:-1]
-        near = np.maximum(np.maximum(low, -high), 0.0)
-        return near, np.maximum(np.abs(low), np.abs(high))
 
 
 @dataclass(frozen=True, eq=False)

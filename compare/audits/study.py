@@ -29,6 +29,7 @@ from ...problem import (
     Case,
     Coupling,
     Interpolant,
+    Measured,
     Printed,
     Problem,
     TrajgapError,
@@ -179,13 +180,15 @@ class Study:
         """The printed durations with their unit."""
         return f"{', '.join(map(str, self.case.printed_durations(claim)))} {self.time_unit}"
 
+    def time(self, number: Printed, claim: Claim, reading: str) -> Measured:
+        """A printed time of a claim, s, with the interval that rounds to its digits."""
+        return self.case.statement(claim.problem, reading).si(number, "time")
+
     def claim_total(self, claim: Claim, reading: str) -> Total | None:
         """A claim's total; None if it has none."""
         shown = self.total_digits(claim)
         printed = printed_total(claim)
-        total = None
-        if printed is not None:
-            total = self.case.measured(printed, "time", claim.problem, reading)
+        total = None if printed is None else self.time(printed, claim, reading)
         if not isinstance(claim, RowClaim):
             return None if total is None else Total(shown, (total.lower, total.upper))
         box = self.case.claim_durations(claim, reading)
@@ -377,7 +380,7 @@ class Study:
             if not isinstance(claim, DurationsClaim) or claim.problem not in (None, pair.problem):
                 continue
             if claim.joint and claim.total is not None and not claim.total.exact:
-                box = self.case.measured(claim.total, "time", *pair)
+                box = self.case.statement(*pair).si(claim.total, "time")
                 halves.append(round((box.upper - box.lower) / 2, 12))
         return (max(halves),) if halves else ()
 

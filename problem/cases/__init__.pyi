@@ -1,4 +1,4 @@
-from .case import Case as Case, DurationBox as DurationBox
+from .case import Case as Case
 from .claim import (
     AnyClaim as AnyClaim,
     AuthorsAnswer as AuthorsAnswer,
@@ -41,7 +41,7 @@ from .data_files import (
     robot_ids as robot_ids,
     validated as validated,
 )
-from .digits import Digits as Digits, end as end
+from .digits import Digits as Digits, RoundingBox as RoundingBox, end as end
 from .faults import all_faults as all_faults, refusal as refusal
 from .instances import InstancesBlock as InstancesBlock, instance_waypoints as instance_waypoints
 from .joint_units import unit_of as unit_of, with_unit as with_unit

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
@@ -11,13 +11,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError
-from ..printed import CHOICES, Measured, Printed, Quantity, UnitOrEach, spelling_hint
+from ..printed import CHOICES, Printed, UnitOrEach, spelling_hint
 from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .clue import AnyClue
 from .data_files import robot_file, robot_ids
-from .digits import Digits
+from .digits import RoundingBox
 from .instances import InstancesBlock
 from .labels import reading_labels
 from .overlay import on_line, overlaid
@@ -43,18 +43,6 @@ _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed",
 """Stands for the one reading of a file that lists none."""
 
 B = TypeVar("B", AnyClaim, ProblemBlock, Reading)
-
-
-@dataclass(frozen=True)
-class DurationBox:
-    """Claimed durations in seconds: as printed, and the box of all values that round to them.
-
-    Each array has shape (segments,).
-    """
-
-    value: Array
-    lower: Array
-    upper: Array
 
 
 @dataclass(frozen=True)
@@ -269,30 +257,6 @@ class Case:
             raise CaseError(self.file, "coupling", f"unknown coupling {coupling!r}; use {known}")
         return problem if coupling is None else replace(problem, coupling=Coupling(coupling))
 
-    def problem_at(
-        self, digits: Digits, problem_id: str | None = None, reading_id: str | None = None
-    ) -> Problem:
-        """Problem whose limits and bounds are at one end of the intervals of their printed digits.
-
-        A limit given as a bare number is exact, and the same at either end.
-
-        Parameters
-        ----------
-        problem_id, reading_id : str, optional
-            As in `problem`.
-
-        Returns
-        -------
-        Problem
-            Through the way-points as printed.
-
-        Raises
-        ------
-        CaseError
-            If the numbers don't fit together there, such as a range that is empty at its tightest.
-        """
-        return self.statement(problem_id, reading_id).problem(digits)
-
     def waypoint_box(
         self, problem_id: str | None = None, reading_id: str | None = None
     ) -> tuple[Array, Array]:
@@ -316,7 +280,7 @@ class Case:
         """Segment durations of a claim as printed; empty if it states none."""
         return claim.durations if isinstance(claim, DurationsClaim | MaximumClaim) else ()
 
-    def claim_durations(self, claim: Claim, reading_id: str | None = None) -> DurationBox:
+    def claim_durations(self, claim: Claim, reading_id: str | None = None) -> RoundingBox:
         """Segment durations of a claim in seconds.
 
         Parameters
@@ -335,37 +299,7 @@ class Case:
                 self.file, f"claim {claim.id!r}", "states no durations; choose one that does"
             )
         statement = self.statement(claim.problem, reading_id)
-        measured = [statement.si(number, "time") for number in printed]
-        return DurationBox(*(np.array(ends) for ends in zip(*map(astuple, measured), strict=True)))
-
-    def measured(
-        self,
-        number: Printed,
-        quantity: Quantity,
-        problem_id: str | None = None,
-        reading_id: str | None = None,
-        joint: str | None = None,
-    ) -> Measured:
-        """Convert a printed number of this case to radians or metres and seconds.
-
-        Parameters
-        ----------
-        number : Printed
-            For example a claim's total or peak.
-        quantity : {"position", "velocity", "acceleration", "jerk", "time"}
-            What it measures, which decides the unit.
-        problem_id, reading_id : str, optional
-            As in `problem`.
-        joint : str, optional
-            Label of its joint; needed if units differ.
-
-        Raises
-        ------
-        CaseError
-            If the file states no unit for the quantity, or states several and no joint is named.
-        """
-        place = None if joint is None else self.robot.joints.index(joint)
-        return self.statement(problem_id, reading_id).si(number, quantity, joint=place)
+        return RoundingBox.of(statement.si(number, "time") for number in printed)
 
     def statement(self, problem_id: str | None = None, reading_id: str | None = None) -> Statement:
         """One problem under one reading, still in printed digits."""

@@ -44,6 +44,7 @@ from .rounded import (
 )
 from .units import (
     CHOICES as CHOICES,
+    CUT_SLACK as CUT_SLACK,
     AngleUnit as AngleUnit,
     LengthUnit as LengthUnit,
     Measured as Measured,

@@ -167,7 +167,7 @@ def _meant(unit: object) -> str:
     return written
 
 
-_CUT_SLACK = 1.0 + 1e-9
+CUT_SLACK = 1.0 + 1e-9
 """Factor by which doubled half-digits are widened, far above their rounding to floats."""
 
 
@@ -186,8 +186,8 @@ class Measured:
     def cut_off(self) -> Measured:
         """The interval widened by every value whose further digits were cut off, not rounded."""
         # A little more than one unit of the last digit, whose own value is rounded.
-        down_to = self.value - 2.0 * (self.value - self.lower) * _CUT_SLACK
-        up_to = self.value + 2.0 * (self.upper - self.value) * _CUT_SLACK
+        down_to = self.value - 2.0 * (self.value - self.lower) * CUT_SLACK
+        up_to = self.value + 2.0 * (self.upper - self.value) * CUT_SLACK
         return Measured(
             self.value,
             self.lower if self.value > 0 else min(self.lower, down_to),

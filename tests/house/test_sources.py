@@ -11,6 +11,7 @@ from support.checkout import ROOT
 
 FOLDERS = {"problem", "heuristics", "nlp", "compare", "verify"}
 NAME = re.compile(r"_?[A-Z][A-Z0-9_]*")
+EXPLAIN = ("TypeVar", "Explained")  # what says itself what it is
 
 
 def bare_constants(source: str) -> list[str]:
@@ -26,7 +27,7 @@ def bare_constants(source: str) -> list[str]:
         else:
             continue
         each = [one for t in targets for one in (t.elts if isinstance(t, ast.Tuple) else [t])]
-        if isinstance(node.value, ast.Call) and ast.unparse(node.value.func) == "TypeVar":
+        if isinstance(node.value, ast.Call) and ast.unparse(node.value.func) in EXPLAIN:
             continue
         names = [t.id for t in each if isinstance(t, ast.Name) and NAME.fullmatch(t.id)]
         below = isinstance(following, ast.Expr) and isinstance(following.value, ast.Constant)

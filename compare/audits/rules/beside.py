@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ....problem import Array, Printed, TrajgapError
-from ..rounding import Agreement, RoundingBox, agreement, hull, meet
+from ....problem.cases import RoundingBox
+from ..rounding import Agreement, agreement, hull, meet
 
 Meant = Callable[[Array, Array], dict[str, float]]
 """From way-points and durations to what a number may be, each in words."""

@@ -22,11 +22,11 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from ....problem import Array, CaseError, Printed, Problem
-from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim
+from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim, RoundingBox
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..own_result import UNSAID, meant_to_keep, said_of
 from ..printed_row import PrintedRow
-from ..rounding import ROUNDING, RoundingBox
+from ..rounding import ROUNDING
 from ..study import Study
 from .rule_group import Explained, rule_group
 

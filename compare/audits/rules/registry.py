@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
+
 from ...documents import Basis, Rule
 from .along_path import judge_along_paths
 from .compared_before import cite_comparisons
@@ -62,9 +64,9 @@ NOT_COMPUTED = Explained(
 )
 """Stands instead of a finding that a group could not compute; the audit itself says it."""
 
-_EVERY = (NOT_COMPUTED, *(rule for group in GROUPS for rule in group.rules.values()))
-
-EXPLAINED = {rule.id: rule for rule in sorted(_EVERY, key=lambda one: one.id)}
+EXPLAINED = dict(
+    sorted(ChainMap({NOT_COMPUTED.id: NOT_COMPUTED}, *(g.rules for g in GROUPS)).items())
+)
 """Every rule by its id."""
 
 RULES = tuple(Rule(one.id, one.title) for one in EXPLAINED.values())

@@ -70,7 +70,7 @@ def test_claims():
     np.testing.assert_array_equal(box.value, [0.961, 1.258, 1.078])
     np.testing.assert_allclose(box.upper - box.lower, 0.001, rtol=1e-9)
     assert case.printed_durations(case.claim("peak")) == ()
-    peak = case.measured(case.claim("peak").value, "velocity", "one")
+    peak = case.statement("one").si(case.claim("peak").value, "velocity")
     assert peak.value == pytest.approx(np.deg2rad(94.8), rel=1e-15)
     assert [c.id for c in case.table_claims("table-1")] == ["times"]
     assert case.algorithms[0].parameters == {

@@ -46,7 +46,7 @@ def test_a_problem_of_some_joints_keeps_listing_all():
     problem = case.problem()
     assert (problem.joints, problem.linear) == (("d3",), (True,))
     assert problem.limits.velocity == pytest.approx([0.12])
-    value = case.measured(case.claim("slide-velocity").printed[0], "velocity").value
+    value = case.statement().si(case.claim("slide-velocity").printed[0], "velocity").value
     assert value == pytest.approx(0.2332)
 
 
