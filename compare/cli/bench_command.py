@@ -14,14 +14,14 @@ from typing import Annotated, Any
 import typer
 
 from ...heuristics import KINDS, optimizer_name
-from ...nlp import Evidence, Solution, printed_problem_or_none, solve
+from ...nlp import Solution
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
 from .. import gaps, pages
 from ..audits import asked_as
 from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
-from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, known, noted
+from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, noted
 from .input import Selected, naming, read_case, select
 from .options import MOST, ProblemId, run_store, run_workers
 from .output import NEVER_RAN, emit, progress, rendered, say
@@ -250,21 +250,15 @@ def _run(
 
 
 def _optimum(case: Case, one: Selected) -> Solution | Reference:
-    """What the suite knows of its own; else solved, certified where a certificate is shipped."""
-    instance = instance_of(case)
-    if instance is not None:
-        lower = known(instance.lower or None, "no lower bound is proved")
-        evidence = Evidence(str(instance.evidence))
-        return Reference(upper=instance.upper, lower=lower, evidence=evidence)
-    exact = printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
-    answer = solve(one.problem, exact=exact)
-    if not 0 < answer.best < math.inf:
-        why = answer.why or str(answer.status)
+    """What is known of the optimum, which is certified where a certificate is shipped."""
+    ids = (one.problem_id, one.reading_id)
+    found = gaps.known_optimum(case, one.problem, case.statement(*ids))
+    if isinstance(found, Solution) and not 0 < found.best < math.inf:
         raise TrajgapError(
-            f"{case.file}: {asked_as(case, one.problem_id, one.reading_id)}: no positive optimum "
-            f"from which gaps could be measured ({why})"
+            f"{case.file}: {asked_as(case, *ids)}: no positive optimum from which gaps could be "
+            f"measured ({found.why or found.status})"
         )
-    return answer
+    return found
 
 
 def _tables(document: BenchDocument) -> list[Block]:
@@ -377,19 +371,21 @@ def _plan(
     seconds: float,
     instances: Sequence[str],
 ) -> gaps.StudyPlan:
-    """The study of these optimisers on these instances, as a study file states it."""
-    blocks = [
-        f"{{ name = {json.dumps(name)}, label = {json.dumps(label)}, settings = "
-        f"{{ {', '.join(f'{json.dumps(k)} = {json.dumps(v)}' for k, v in own.items())} }} }}"
+    """The study of these optimisers on these instances."""
+    optimizers = [
+        {"name": name, "label": label, "settings": dict(settings.get(name, {}))}
         for label, name in labels.items()
-        for own in [settings.get(name, {})]
     ]
-    text = (
-        f"format = 1\nbudget = {budget}\nseeds = {seeds}\nseconds = {seconds}\n"
-        f"handlings = {json.dumps(handling)}\noptimizers = [{', '.join(blocks)}]\n"
-        f"[[problems]]\ncase = {json.dumps(SUITE_PREFIX + ','.join(instances))}\n"
-    )
-    return gaps.parse_study(text, "--optimizer", Path())
+    stated = {
+        "format": 1,
+        "budget": budget,
+        "seeds": seeds,
+        "seconds": seconds,
+        "handlings": handling,
+        "optimizers": optimizers,
+        "problems": [{"case": SUITE_PREFIX + ",".join(instances)}],
+    }
+    return gaps.study_of(stated, "--optimizer", Path())
 
 
 def _said(one: gaps.Ranked, board: gaps.Board) -> str:

@@ -39,6 +39,7 @@ from .many_problems import (
 )
 from .optimality_gap import (
     gap as gap,
+    known_optimum as known_optimum,
     reference_of as reference_of,
 )
 from .rows import (
@@ -73,7 +74,6 @@ from .statistics import (
     share_of_luck as share_of_luck,
     share_of_pairs as share_of_pairs,
     spread as spread,
-    vargha_delaney as vargha_delaney,
 )
 from .store import Store as Store
 from .studies import (
@@ -81,6 +81,7 @@ from .studies import (
     StudyProblem as StudyProblem,
     load_study as load_study,
     parse_study as parse_study,
+    study_of as study_of,
 )
 from .summaries import (
     LADDER as LADDER,

@@ -75,12 +75,8 @@ class Entrant:
     def trials(self, first: Trial, budget: int | None, seeds: range) -> tuple[Trial, ...]:
         """Its runs on one problem: one for each seed, or one in all if it draws no random numbers.
 
-        Parameters
-        ----------
-        first : Trial
-            All that does not depend on the optimiser; its stream follows the entrant's own.
-        budget : int or None
-            As `run_budget` takes it.
+        `first`: all that does not depend on the optimiser; its stream follows the entrant's own.
+        `budget`: as `run_budget` takes it.
         """
         one = replace(
             first,
@@ -143,13 +139,34 @@ def bench(
 
     Parameters
     ----------
+    problem : Problem
+        Searched with one duration vector for all its joints. If it has no upper bound on a
+        duration, searches are restricted to the total that equal durations reach; the notes say so.
+    optimizers : str, callable, or iterable of them
+        As `find_optimizer` takes them; a callable must be a function of a module.
+    seeds : int
+        Runs of each optimiser, 30 by default; one run if it draws no random numbers.
+    budget : int, optional
+        Evaluations of each run; the objective stops a run that asks for more. Without it, a paper's
+        algorithm runs the iterations that its paper prints, and any other optimiser has 6000
+        evaluations.
+    handling : str
+        "death-penalty", "stretch" or "rescale".
+    settings : mapping, optional
+        Settings of an optimiser, by its name.
+    baselines : bool
+        Whether random search, one shared duration, local searches from many starts, and CMA-ES
+        with repair (if pycma is installed) take part.
+    seconds : float
+        Time limit of one run; a run that takes longer has failed.
+    name, reading : str
+        Names of the problem in the rows.
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default in this process, one by one.
     progress : callable, optional
         Called with each row as it arrives.
     **options
-        ``seeds``, ``budget``, ``handling``, ``settings``, ``baselines``, ``seconds``, ``name`` and
-        ``reading``, as `plan_bench` takes them.
+        The other parameters.
 
     Returns
     -------
@@ -159,7 +176,13 @@ def bench(
     Raises
     ------
     TrajgapError
-        As `plan_bench`. Faults of an optimiser during a run are recorded in its rows.
+        If an optimiser or setting is unknown, a package is missing, or the objective cannot judge
+        the problem. Faults of an optimiser during a run are recorded in its rows.
+
+    Notes
+    -----
+    Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
+    optimisers are independent samples, even with equal seeds.
     """
     return run_bench(plan_bench(problem, optimizers, **options), engine, progress)
 
@@ -177,44 +200,7 @@ def plan_bench(
     name: str = "",
     reading: str = "",
 ) -> BenchPlan:
-    """Plan the runs of a bench.
-
-    Parameters
-    ----------
-    problem : Problem
-        Searched with one duration vector for all its joints. If it has no upper bound on a
-        duration, searches are restricted to the total that equal durations reach; the notes say so.
-    optimizers : str, callable, or iterable of them
-        As `find_optimizer` takes them; a callable must be a function of a module.
-    seeds : int
-        Runs of each optimiser; one run if it draws no random numbers.
-    budget : int, optional
-        Evaluations of each run; the objective stops a run that asks for more. Without it, a paper's
-        algorithm runs the iterations that its paper prints, and any other optimiser has 6000
-        evaluations.
-    handling : str
-        "death-penalty", "stretch" or "rescale".
-    settings : mapping, optional
-        Settings of an optimiser, by its name.
-    baselines : bool
-        Whether random search, one shared duration, local searches from many starts, and CMA-ES
-        with repair (if pycma is installed) take part.
-    seconds : float
-        Time limit of one run; a run that takes longer has failed.
-    name, reading : str
-        Names of the problem in the rows.
-
-    Raises
-    ------
-    TrajgapError
-        If an optimiser or setting is unknown, a package is missing, or the objective cannot judge
-        the problem.
-
-    Notes
-    -----
-    Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
-    optimisers are independent samples, even with equal seeds.
-    """
+    """Plan the runs of a bench; parameters and errors as `bench`."""
     judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
     box = search_box(problem)
@@ -322,11 +308,8 @@ def enter(
 ) -> tuple[tuple[Entrant, ...], tuple[str, ...]]:
     """Entrants of a bench with their settings, and what was chosen for them.
 
-    Raises
-    ------
-    TrajgapError
-        If an optimiser or a setting is unknown, a package is missing, or a setting is for none of
-        the optimisers.
+    Raises a TrajgapError if an optimiser or a setting is unknown, a package is missing, or a
+    setting is for none of the optimisers.
     """
     notes: list[str] = []
     settings = {optimizer_name(name): own for name, own in settings.items()}

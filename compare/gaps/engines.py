@@ -32,16 +32,9 @@ def _processes() -> Processes:
 def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
     """Run a trial in another process, which is kept for the next one.
 
-    Returns
-    -------
-    TrialOutcome
-        A run whose process ends is repeated once in a new process. The run has failed if that
-        process ends too, or if the run takes longer than the trial allows.
-
-    Raises
-    ------
-    ProcessError
-        If no process can be started.
+    A run whose process ends is repeated once in a new process. The run has failed if that process
+    ends too, or if the run takes longer than the trial allows. A ProcessError says that no process
+    can be started.
     """
     begun = time.monotonic()
     limit = trial.seconds + _GRACE
@@ -69,13 +62,7 @@ class Engine:
 
 @contextmanager
 def on_this_machine(workers: int) -> Iterator[Engine]:
-    """Run trials in processes of this machine.
-
-    Parameters
-    ----------
-    workers : int
-        1 runs one trial after another, still in a separate process.
-    """
+    """Run trials in processes of this machine; one worker runs one after another."""
     name = f"{workers} {'process' if workers == 1 else 'processes'}"
     # The processes end first: a thread that waits for an answer could not be joined.
     with ThreadPoolExecutor(workers, thread_name_prefix="trial") as threads, Processes() as own:
@@ -84,18 +71,7 @@ def on_this_machine(workers: int) -> Iterator[Engine]:
 
 @contextmanager
 def on_dask(address: str) -> Iterator[Engine]:
-    """Run trials on a Dask cluster.
-
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, such as "tcp://node1:8786".
-
-    Raises
-    ------
-    ProcessError
-        If Dask is not installed or no scheduler answers.
-    """
+    """Run trials on the Dask cluster whose scheduler has an address like "tcp://node1:8786"."""
     try:
         from distributed import Client
     except ImportError:
@@ -120,17 +96,9 @@ def _threads(client: Any) -> int:
 def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     """Run trials; outcomes come as they finish, in any order.
 
-    Only a few trials are submitted at a time, so memory does not grow with their number.
-
-    Parameters
-    ----------
-    trials : iterable of Trial
-        They are read one by one, as workers become free.
-
-    Raises
-    ------
-    ProcessError
-        If the engine itself fails; trials that have not returned are then not done.
+    Trials are read one by one, as workers become free, so memory does not grow with their number. A
+    ProcessError says that the engine itself failed; trials that have not returned are then not
+    done.
     """
     pending: dict[Future[TrialOutcome], Trial] = {}
     try:

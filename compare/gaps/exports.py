@@ -49,23 +49,9 @@ _NOTHING = sys.float_info.max
 def export_rows(rows: Iterable[Row], path: Path) -> int:
     """Write rows in the format of the name's ending; the file appears complete or not at all.
 
-    Parameters
-    ----------
-    rows : iterable of Row
-        Read one by one.
-    path : Path
-        Ends with ".csv" or ".parquet"; or with ".ioh", a folder in IOHprofiler's format.
-
-    Returns
-    -------
-    int
-        Rows written. IOHprofiler's format cannot hold a run that evaluated nothing.
-
-    Raises
-    ------
-    CaseError
-        If the name has another ending or is taken, the file cannot be written, or the package
-        for the format is missing.
+    Returns the number of rows written: IOHprofiler's format cannot hold a run that evaluated
+    nothing. `path`: ends with ".csv" or ".parquet", or with ".ioh", a folder in IOHprofiler's
+    format.
     """
     check_export(path)
     try:

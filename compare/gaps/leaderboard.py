@@ -29,8 +29,6 @@ SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
 class Ranked:
     """One optimiser over all problems of a leaderboard, which have equal weight.
 
-    Notes
-    -----
     Intervals come from resampling the problems: they show how much the numbers depend on the choice
     of problems.
     """
@@ -88,15 +86,10 @@ def leaderboard_rows() -> tuple[Summary, ...]:
 
 
 def boards(found: Iterable[Summary]) -> tuple[Board, ...]:
-    """Standings for each budget and handling.
+    """Standings for each budget, and under it for each handling, that some problem is complete for.
 
     A board contains only optimisers with all their runs on all its problems, which are those that
     at least half of the optimisers have finished.
-
-    Returns
-    -------
-    tuple of Board
-        By budget, then by handling, without those that no problem is complete for.
     """
     parts: dict[tuple[int, str], dict[str, dict[str, Summary]]] = {}
     for one in found:

@@ -15,17 +15,9 @@ from .statistics import quantiles
 
 
 def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
-    """Every optimiser over all problems, the largest share of runs within 1 % first.
+    """Results of the same optimisers on several problems, the most runs within 1 % first.
 
-    Parameters
-    ----------
-    results : sequence of BenchResult
-        Results of the same optimisers, one for each problem.
-
-    Returns
-    -------
-    tuple of OverallStanding
-        Empty for a single problem.
+    Empty for a single problem.
     """
     if len(results) < 2:
         return ()

@@ -22,8 +22,8 @@ from ...problem import (
     published_ids,
     read_text,
 )
-from ...problem.cases import SUITE_PREFIX, Statement, check_format, validated
-from ...problem.suite import instance_of, select_instances
+from ...problem.cases import SUITE_PREFIX, check_format, validated
+from ...problem.suite import select_instances
 from .benching import (
     WITHOUT_DRAWS,
     Entrant,
@@ -82,23 +82,14 @@ class StudyPlan:
     def trials(self, store: Store | None = None) -> Iterator[Trial]:
         """Every trial, one by one, in an order that the file alone determines.
 
-        Parameters
-        ----------
-        store : Store, optional
-            Provides and stores the optima from which gaps are measured; without it, rows have no
-            gaps.
+        `store`: provides and stores the optima from which gaps are measured; without it, rows have
+        no gaps.
         """
         for _, trials in self.groups(store):
             yield from trials
 
     def groups(self, store: Store | None = None) -> Iterator[tuple[str, tuple[Trial, ...]]]:
-        """Groups of trials that differ only in their seeds, with the label of their optimiser.
-
-        Parameters
-        ----------
-        store : Store, optional
-            As for `trials`.
-        """
+        """Groups of trials that differ only in their seeds, with the label of their optimiser."""
         asked = self.document
         for budget in asked.budget or (None,):
             for entry in self.problems:
@@ -140,34 +131,20 @@ def _seeds(name: str, asked: StudyFile) -> int:
 
 
 def load_study(path: Path) -> StudyPlan:
-    """Read a study file, and everything that it names.
-
-    Raises
-    ------
-    CaseError
-        One line: the file, the field, and how to fix it.
-    """
+    """Read a study file, and everything that it names."""
     return parse_study(read_text(path), str(path), path.parent)
 
 
 def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
-    """Read the text of a study file.
+    """Read the TOML of a study file.
 
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name for messages.
-    folder : Path
-        Folder to which its paths are relative.
-
-    Raises
-    ------
-    CaseError
-        As `load_study`.
+    `file`: name for messages. `folder`: to which its paths are relative.
     """
-    raw = parse_toml(text, file)
+    return study_of(parse_toml(text, file), file, folder)
+
+
+def study_of(raw: dict[str, Any], file: str, folder: Path) -> StudyPlan:
+    """The study that a table with the keys of a study file states."""
     check_format(raw, file)
     document, missing = _check_optimizers(validated(StudyFile, raw, file), file)
     problems = tuple(
@@ -198,13 +175,7 @@ def _check_repeats(problems: tuple[StudyProblem, ...], document: StudyFile, file
 
 
 def _check_optimizers(document: StudyFile, file: str) -> tuple[StudyFile, tuple[str, ...]]:
-    """The study without optimisers whose package may be missing and is, and what is missing.
-
-    Raises
-    ------
-    CaseError
-        If an optimiser or a setting is unknown.
-    """
+    """The study without optimisers whose package may be missing and is, and what is missing."""
     found, missing = [], []
     for at, block in enumerate(document.optimizers):
         try:
@@ -273,19 +244,9 @@ def _entries(
                 problem=one,
                 box=box,
                 stream=() if joint is None else (joint,),
-                solve=partial(_bracket, case, one, case.statement(pid, rid), joint),
+                solve=partial(bracket_of, case, one, case.statement(pid, rid), joint),
                 notes=bounds_note(one),
             )
-
-
-def _bracket(
-    case: Case, problem: Problem, statement: Statement, joint: int | None
-) -> Bracket | None:
-    """What the suite knows of its own instances; the rest is solved."""
-    known = instance_of(case) if joint is None else None
-    if known is None:
-        return bracket_of(problem, statement, joint)
-    return Bracket(known.upper, known.lower or None)
 
 
 def _pairs(case: Case, block: ProblemsBlock) -> list[tuple[str, str]]:

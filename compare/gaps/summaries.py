@@ -51,14 +51,9 @@ class Summary:
 
 
 def summary_of(label: str, rows: Sequence[Row]) -> Summary:
-    """Summarise rows that differ only in their seeds.
+    """Summarise rows of an optimiser with a label that differ only in their seeds.
 
-    Parameters
-    ----------
-    label : str
-        Of the optimiser.
-    rows : sequence of Row
-        At least one; of a problem whose optimum is known.
+    At least one; of a problem whose optimum is known.
     """
     first = rows[0]
     optimum = first.reference_upper
@@ -84,13 +79,10 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
 
 
 def summed_up(study: StudyPlan, store: Store) -> Iterator[Summary]:
-    """Summarise the complete parts of a study in a store.
+    """Summaries of the complete parts of a study in a store, in the order of the study.
 
-    Yields
-    ------
-    Summary
-        One for each problem, optimiser, handling and budget with a run for every seed and a known
-        optimum, in the order of the study.
+    One for each problem, optimiser, handling and budget with a run for every seed and a known
+    optimum.
     """
     for label, trials in study.groups(store):
         if trials[0].reference is None or store.status(trials[-1].key) is None:
