@@ -23,8 +23,8 @@ from ..audits import asked_as
 from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
 from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, noted
 from .input import Selected, naming, read_case, select
-from .options import MOST, ProblemId, run_store, run_workers
-from .output import NEVER_RAN, emit, progress, rendered, say
+from .options import ExitCode, ProblemId, count, run_store, run_workers
+from .output import emit, progress, rendered, say
 
 
 def bench(
@@ -63,12 +63,7 @@ def bench(
     ] = None,
     seeds: Annotated[
         int | None,
-        typer.Option(
-            min=1,
-            max=MOST,
-            help="Number of runs of each optimiser.",
-            show_default="30; 15 with --against",
-        ),
+        count("Number of runs of each optimiser.", show_default="30; 15 with --against"),
     ] = None,
     budget: Annotated[
         int | None,
@@ -172,7 +167,7 @@ def bench(
     if folder is not None and not as_json:
         say(f"page: {folder / 'index.html'}\n")
     every = [one for result, _ in results for one in result.standings]
-    return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
+    return ExitCode.AGAINST if any(one.failed == one.runs for one in every) else 0
 
 
 def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
@@ -333,7 +328,7 @@ def _stand_among(
             "are the committed rows of the leaderboard."
         ),
     ]))  # fmt: skip
-    return NEVER_RAN if any(one.failed == one.runs for one in standing) else 0
+    return ExitCode.AGAINST if any(one.failed == one.runs for one in standing) else 0
 
 
 def _board(budget: int, handling: str) -> gaps.Board:

@@ -10,11 +10,13 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
+import typer
 from rich import box
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -26,12 +28,9 @@ from ...problem import CaseError, new_file, replace_file, try_writing_in, visibl
 from ..blocks import Block, CardShown, Grid, Prose, Terms, table
 from ..documents import Document, json_text
 from ..pages import unwritable
+from .options import Options
 
 D = TypeVar("D", bound=Document)
-
-NEVER_RAN = 1
-"""Exit code where every run of an optimiser failed: as of other answers that a script must not take
-for a success. What the other optimisers came to is printed and written."""
 
 
 def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) -> None:
@@ -45,15 +44,24 @@ def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) ->
     say(text)
 
 
-def answer(
-    made: Callable[[], D], summary: Callable[[D], Iterable[Block]], as_json: bool, out: Path | None
-) -> D:
-    """Make a document, write it to a new file if there is to be one, and print it."""
-    with new_output(out) as write:
-        document = made()
-        write(json_text(document))
-    emit(document, summary, as_json)
-    return document
+@dataclass(frozen=True)
+class Answering(Options):
+    """How a command answers: with a summary for reading, or with JSON."""
+
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON (see docs/reference/command-line.md).")
+    ] = False
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write the JSON to this new file.")
+    ] = None
+
+    def answer(self, made: Callable[[], D], summary: Callable[[D], Iterable[Block]]) -> D:
+        """Make a document, write it to a new file if there is to be one, and print it."""
+        with new_output(self.out) as write:
+            document = made()
+            write(json_text(document))
+        emit(document, summary, self.as_json)
+        return document
 
 
 def warn(doubts: Iterable[str]) -> None:
