@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields
 from enum import IntEnum
 from functools import wraps
 from inspect import Parameter, Signature, signature
@@ -55,10 +55,10 @@ def command_group(**settings: Any) -> typer.Typer:
 
 def with_options(command: Callable[..., int]) -> Callable[..., int]:
     """The command with the fields of its records as options, in the place of each record."""
-    kinds = {
+    kinds: dict[str, type[Options]] = {
         name: kind
         for name, kind in get_type_hints(command).items()
-        if is_dataclass(kind) and issubclass(kind, Options)
+        if isinstance(kind, type) and issubclass(kind, Options)
     }
     hints = get_type_hints(command, include_extras=True)
     taken = [

@@ -246,8 +246,6 @@ def _writing(name: str, field: str) -> Iterator[None]:
         raise CaseError(name, field, unwritable(error)) from None
 
 
-_NARROWEST = 16
-"""Columns that prose keeps in the narrowest window."""
 _STYLES = {
     **dict.fromkeys(("pass", "keeps", "consistent", "optimal", "converged", "supported"), "green"),
     **dict.fromkeys(("violated", "discontinuous", "feasible", "not_attained"), "yellow"),
@@ -266,9 +264,11 @@ class Columns:
     """Table in which columns of prose share what the window leaves.
 
     Whatever else is cut off would say something else, so a table may be wider than the window.
+    `least`: characters that prose keeps in the narrowest window.
     """
 
-    def __init__(self, grid: Grid) -> None:
+    def __init__(self, grid: Grid, least: int = 16) -> None:
+        self._least = least
         self._names = grid.columns
         self._kinds = [grid.mark(i) for i in range(len(grid.columns))]
         self._rows = [[plain(cell.text) for cell in row] for row in grid.rows]
@@ -284,8 +284,8 @@ class Columns:
         for after, i in enumerate(prose, 1):
             others = len(prose) - after
             cut = self._kinds[i] == "…"
-            most = left - others * _NARROWEST if cut else left // (others + 1)
-            shared[i] = min(self._widths[i], max(_NARROWEST, most))
+            most = left - others * self._least if cut else left // (others + 1)
+            shared[i] = min(self._widths[i], max(self._least, most))
             left -= shared[i]
         return shared
 
@@ -295,7 +295,7 @@ class Columns:
         return firm + 2 * (len(self._widths) - 1)
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
-        return Measurement(self._total(_NARROWEST), self._total(options.max_width))
+        return Measurement(self._total(self._least), self._total(options.max_width))
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         widths = self._shared(options.max_width)

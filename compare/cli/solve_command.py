@@ -139,7 +139,7 @@ def _solve_case(
         results, written = [], None
         retimings: _Retimings = {}
         with (
-            new_output(asked and asked.file, "--samples") as write_samples,
+            new_output(asked.file if asked else None, "--samples") as write_samples,
             progress("solve", len(selected)) as step,
             naming(case.file),
         ):

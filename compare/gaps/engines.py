@@ -15,11 +15,6 @@ from ...problem import LostWork, ProcessError, Processes, TrajgapError
 from .rows import Trial, failed
 from .trials import TrialOutcome, measured_trial
 
-_GRACE = 5.0
-"""Seconds after its time limit in which a process may end a trial by itself."""
-_PATIENCE = 30
-"""Seconds in which a scheduler must answer."""
-
 
 @lru_cache(maxsize=1)
 def _processes() -> Processes:
@@ -29,7 +24,7 @@ def _processes() -> Processes:
     return found
 
 
-def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
+def run_apart(trial: Trial, processes: Processes | None = None, grace: float = 5.0) -> TrialOutcome:
     """Run a trial in another process, which is kept for the next one.
 
     A run whose process ends is repeated once in a new process. The run has failed if that process
@@ -37,7 +32,7 @@ def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
     can be started.
     """
     begun = time.monotonic()
-    limit = trial.seconds + _GRACE
+    limit = trial.seconds + grace
     try:
         return (processes or _processes()).run(measured_trial, trial, seconds=limit)
     except LostWork as lost:
@@ -70,8 +65,11 @@ def on_this_machine(workers: int) -> Iterator[Engine]:
 
 
 @contextmanager
-def on_dask(address: str) -> Iterator[Engine]:
-    """Run trials on the Dask cluster whose scheduler has an address like "tcp://node1:8786"."""
+def on_dask(address: str, patience: float = 30.0) -> Iterator[Engine]:
+    """Run trials on the Dask cluster whose scheduler has an address like "tcp://node1:8786".
+
+    `patience`: s in which the scheduler must answer.
+    """
     try:
         from distributed import Client
     except ImportError:
@@ -79,7 +77,7 @@ def on_dask(address: str) -> Iterator[Engine]:
             'dask: is not installed; run `python -m pip install "trajgap[dask]"`'
         ) from None
     try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        client = Client(address, timeout=patience, set_as_default=False)
     except (OSError, ValueError) as error:
         said = " ".join(str(error).split())
         raise ProcessError(

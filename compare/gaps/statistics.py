@@ -121,9 +121,6 @@ def settled_at(trace: Array, tolerance: float) -> int:
 
 SAMPLES = 2000
 """Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
-LEAST_RUNS = 5
-"""Runs of each from which on two optimisers are compared: below it the smallest p-value of the
-rank test is above 1 %, whatever the runs say."""
 
 
 def compare_pair(first: Array, second: Array) -> dict[str, float]:
@@ -153,15 +150,15 @@ def compare_pair(first: Array, second: Array) -> dict[str, float]:
     }
 
 
-def compare_pairs(totals: Mapping[str, Array]) -> tuple[PairCompared, ...]:
+def compare_pairs(totals: Mapping[str, Array], least: int = 5) -> tuple[PairCompared, ...]:
     """Every pair of optimisers in order, with Mann and Whitney's test and Holm's correction.
 
     The test is for independent samples: the streams of two optimisers differ even for equal seeds
     (see `bench`), so runs are not paired and no signed-rank test is made. `totals`: of each
-    optimiser's runs, s; inf for a run without an answer. Those with fewer than `LEAST_RUNS` are
-    left out.
+    optimiser's runs, s; inf for a run without an answer. `least`:
+    runs of each that are compared; below five the smallest p-value of the rank test is above 1 %.
     """
-    pairs = list(combinations([n for n, one in totals.items() if one.size >= LEAST_RUNS], 2))
+    pairs = list(combinations([n for n, one in totals.items() if one.size >= least], 2))
     tests = [_p_value(*_tied(totals[a], totals[b])) for a, b in pairs]
     return tuple(
         PairCompared(first=a, second=b, p_value=p, **compare_pair(totals[a], totals[b]))

@@ -11,8 +11,8 @@ from typing import Self
 from ...problem import CaseError, TrajgapError, check_regular
 from .rows import ROW_FORMAT, Bracket, Row, RowStatus
 
-_APPLICATION = 0x7472676A
-"""SQLite's application id of our stores, "trgj": a database of somebody else is not touched."""
+_APPLICATION = int.from_bytes(b"trgj", "big")
+"""SQLite's application id of our stores: a database of somebody else is not touched."""
 _TABLES = """
 CREATE TABLE runs (
     key TEXT PRIMARY KEY, status TEXT NOT NULL, row TEXT NOT NULL, seconds REAL NOT NULL

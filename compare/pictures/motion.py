@@ -33,7 +33,6 @@ from ...problem.motions import (
 from ..documents import si_unit
 from .drawing import INK, ORANGE, RED, Picture, shown
 from .panels import (
-    HUGE,
     POINTS,
     Line,
     Mark,
@@ -48,8 +47,10 @@ from .panels import (
     without,
 )
 
-_FEW = 60
-"""Samples or pieces of which each is marked: more would hide the curve."""
+
+def _few(times: Array) -> bool:
+    """Whether each sample or piece is marked: more would hide the curve."""
+    return times.size <= 60
 
 
 def motion_picture(
@@ -176,7 +177,7 @@ def checked_picture(
         of, times, points = "for all t", content.breaks, "○ point of the file"
     span = float(times[0]), float(times[-1])
     note = f"   ·   {of}: {found.verdict}"
-    signs = (points, "● nearest to a limit") if times.size <= _FEW else ("● nearest to a limit",)
+    signs = (points, "● nearest to a limit") if _few(times) else ("● nearest to a limit",)
     return panels_picture(rows, title, signs, note, span)
 
 
@@ -204,7 +205,7 @@ class _Row:
             ]
             for slack in (error, -error)
         )
-        few = motion.breaks.size <= _FEW
+        few = _few(motion.breaks)
         ends = np.append(trajectory.derivatives(0)[0, :, 0], trajectory.edges(0)[1][-1, 0])
         jumps = [
             one.time
@@ -234,7 +235,7 @@ class _Row:
         if sizes and order:
             told &= errors <= max(sizes)
         times, values = times[told], values[told]
-        errors = np.nan_to_num(errors[told], nan=HUGE, posinf=HUGE)
+        errors = np.nan_to_num(errors[told], nan=np.finfo(np.float64).max)
         gap = (samples.time[-1] - samples.time[0]) / POINTS
         broken, unsure = (
             joined_stretches(
@@ -249,7 +250,7 @@ class _Row:
             thinned(times, values),
             broken=broken,
             unsure=without(unsure, broken, self.found.total_time / POINTS),
-            points=points if samples.time.size <= _FEW and order == 0 else None,
+            points=points if _few(samples.time) and order == 0 else None,
             dots=True,
         )
 
