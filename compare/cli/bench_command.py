@@ -23,8 +23,43 @@ from ..audits import asked_as
 from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
 from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, noted
 from .input import Selected, naming, read_case, select
-from .options import ExitCode, ProblemId, count, run_store, run_workers
+from .options import ExitCode, Options, ProblemId, count, run_store, run_workers
 from .output import emit, progress, rendered, say
+
+
+@dataclass(frozen=True)
+class RunOptions(Options):
+    """How each optimiser is run."""
+
+    seeds: Annotated[
+        int | None,
+        count("Number of runs of each optimiser.", show_default="30; 15 with --against"),
+    ] = (None,)
+    budget: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=10**7,
+            help="Number of evaluations of each run.",
+            show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
+        ),
+    ] = (None,)
+    handling: Annotated[
+        str,
+        typer.Option(
+            metavar="death-penalty|stretch|rescale",
+            help="Treatment of durations that break a limit.",
+        ),
+    ] = ("death-penalty",)
+    baselines: Annotated[
+        bool,
+        typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
+    ] = (True,)
+    seconds: Annotated[
+        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
+    ] = (gaps.SECONDS,)
+    workers: Annotated[int, run_workers()] = (1,)
+    store: Annotated[Path | None, run_store()] = None
 
 
 def bench(
@@ -61,34 +96,7 @@ def bench(
             "--reading", metavar="ID", help="Use this reading instead of the default one."
         ),
     ] = None,
-    seeds: Annotated[
-        int | None,
-        count("Number of runs of each optimiser.", show_default="30; 15 with --against"),
-    ] = None,
-    budget: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=10**7,
-            help="Number of evaluations of each run.",
-            show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
-        ),
-    ] = None,
-    handling: Annotated[
-        str,
-        typer.Option(
-            metavar="death-penalty|stretch|rescale",
-            help="Treatment of durations that break a limit.",
-        ),
-    ] = "death-penalty",
-    baselines: Annotated[
-        bool,
-        typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
-    ] = True,
-    seconds: Annotated[
-        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
-    ] = gaps.SECONDS,
-    workers: Annotated[int, run_workers()] = 1,
+    run: RunOptions,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
     ] = False,
@@ -106,7 +114,6 @@ def bench(
             metavar="leaderboard", help="Show where the optimisers rank among committed results."
         ),
     ] = None,
-    store: Annotated[Path | None, run_store()] = None,
 ) -> int:
     """Show how far optimisers end from the optimum of a case or suite."""
     chosen = [optimizer_name(name) for text in optimizer for name in text.split(",") if name]
@@ -118,9 +125,7 @@ def bench(
                 raise typer.BadParameter(f"{name} cannot be combined with --against")
         if against != gaps.LEADERBOARD:
             raise CaseError("--against", "", f"{against!r} is unknown; use {gaps.LEADERBOARD}")
-        # Evaluations and seeds are those of the leaderboard's first table.
-        runs = budget or 1000, handling, seeds or 15, seconds
-        return _stand_among(case, chosen, set_here, runs, workers, store)
+        return _stand_among(case, chosen, set_here, run)
     if case is None:
         raise typer.BadParameter("name a CASE, FILE or SUITE, or --against leaderboard")
     # One case, or the instances of the suite that are named.
@@ -133,7 +138,7 @@ def bench(
         pages.check_bench_folder(folder)
     asked = []
     for stated in cases:
-        own = _own(stated, chosen, iterations=budget is None)
+        own = _own(stated, chosen, iterations=run.budget is None)
         settled = own | {
             name: {**own.get(name, {}), **changed} for name, changed in set_here.items()
         }
@@ -142,14 +147,14 @@ def bench(
                 plan = gaps.plan_bench(
                     one.problem,
                     chosen,
-                    seeds=seeds or gaps.SEEDS,
-                    budget=budget,
-                    handling=handling,
+                    seeds=run.seeds or gaps.SEEDS,
+                    budget=run.budget,
+                    handling=run.handling,
                     settings=settled,
-                    baselines=baselines,
+                    baselines=run.baselines,
                     name=stated.id if len(cases) > 1 else f"{stated.id}/{one.problem_id}",
                     reading="" if len(cases) > 1 else one.reading_id,
-                    seconds=seconds,
+                    seconds=run.seconds,
                 )
                 own_coupling = stated.problem(one.problem_id, one.reading_id).coupling
                 if own_coupling is not Coupling.SHARED and len(one.problem.joints) > 1:
@@ -160,7 +165,7 @@ def bench(
                     )
                     plan = replace(plan, notes=(note, *plan.notes))
                 asked.append(_Asked(stated, one, plan))
-    results = _run(asked, workers, store)
+    results = _run(asked, run)
     if folder is not None:
         pages.write_bench(results, folder)
     emit(pages.bench_document(results), _tables, as_json)
@@ -221,9 +226,7 @@ class _Asked:
         return f"{head}; {asked_as(case, self.selected.problem_id, self.selected.reading_id)}"
 
 
-def _run(
-    asked: Sequence[_Asked], workers: int, kept: Path | None
-) -> list[tuple[BenchResult, gaps.Runs]]:
+def _run(asked: Sequence[_Asked], run: RunOptions) -> list[tuple[BenchResult, gaps.Runs]]:
     results = []
     with progress("solve", len(asked)) as solving:
         optima = []
@@ -232,8 +235,8 @@ def _run(
             with naming(one.case.file):
                 optima.append(_optimum(one.case, one.selected))
     with ExitStack() as stack:
-        store = None if kept is None else stack.enter_context(gaps.Store(kept))
-        engine = stack.enter_context(gaps.on_this_machine(workers))
+        store = None if run.store is None else stack.enter_context(gaps.Store(run.store))
+        engine = stack.enter_context(gaps.on_this_machine(run.workers))
         total = sum(len(one.plan.trials) for one in asked)
         step = stack.enter_context(progress("first runs", total, rate=True))
         for one, optimum in zip(asked, optima, strict=True):
@@ -284,25 +287,35 @@ def _stand_among(
     source: str | None,
     names: Sequence[str],
     settings: Mapping[str, Mapping[str, Any]],
-    asked: tuple[int, str, int, float],
-    workers: int,
-    store: Path | None,
+    run: RunOptions,
 ) -> int:
     """Run optimisers on instances of the leaderboard, all by default, and print where they stand.
 
-    `asked`: evaluations, handling, seeds and seconds of the runs.
+    Evaluations and seeds are by default those of the leaderboard's first table.
     """
-    budget, handling, seeds, seconds = asked
+    budget, handling = run.budget or 1000, run.handling
     board = _board(budget, handling)
     instances = _instances(board, source)
     # None of the labels is one of the committed rows.
     taken = {one.optimizer for one in board.standings} | set(board.missing)
     labels = {f"{name} (now)" if name in taken else name: name for name in names}
-    plan = _plan(labels, settings, seeds, budget, handling, seconds, instances)
+    stated = {
+        "format": 1,
+        "budget": budget,
+        "seeds": run.seeds or 15,
+        "seconds": run.seconds,
+        "handlings": handling,
+        "optimizers": [
+            {"name": name, "label": label, "settings": dict(settings.get(name, {}))}
+            for label, name in labels.items()
+        ],
+        "problems": [{"case": SUITE_PREFIX + ",".join(instances)}],
+    }
+    plan = gaps.study_of(stated, "--optimizer", Path())
     with ExitStack() as stack:
-        path = store or Path(stack.enter_context(TemporaryDirectory()), "runs.sqlite")
+        path = run.store or Path(stack.enter_context(TemporaryDirectory()), "runs.sqlite")
         kept = stack.enter_context(gaps.Store(path))
-        engine = stack.enter_context(gaps.on_this_machine(workers))
+        engine = stack.enter_context(gaps.on_this_machine(run.workers))
         step = stack.enter_context(progress("runs", len(plan)))
 
         def show(now: gaps.StudySession) -> None:
@@ -355,32 +368,6 @@ def _instances(board: gaps.Board, source: str | None) -> tuple[str, ...]:
         some = ", ".join(SUITE_PREFIX + name for name in names[:3])
         raise CaseError(source, "", f"not an instance of the leaderboard; it has {some}, ...")
     return chosen
-
-
-def _plan(
-    labels: Mapping[str, str],
-    settings: Mapping[str, Mapping[str, Any]],
-    seeds: int,
-    budget: int,
-    handling: str,
-    seconds: float,
-    instances: Sequence[str],
-) -> gaps.StudyPlan:
-    """The study of these optimisers on these instances."""
-    optimizers = [
-        {"name": name, "label": label, "settings": dict(settings.get(name, {}))}
-        for label, name in labels.items()
-    ]
-    stated = {
-        "format": 1,
-        "budget": budget,
-        "seeds": seeds,
-        "seconds": seconds,
-        "handlings": handling,
-        "optimizers": optimizers,
-        "problems": [{"case": SUITE_PREFIX + ",".join(instances)}],
-    }
-    return gaps.study_of(stated, "--optimizer", Path())
 
 
 def _said(one: gaps.Ranked, board: gaps.Board) -> str:

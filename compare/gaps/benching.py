@@ -23,13 +23,22 @@ from ...heuristics import (
     search_box,
 )
 from ...nlp import Solution
-from ...problem import Problem, TrajgapError
-from ..documents import BenchResult, Reference
+from ...problem import TOLERANCE, Problem, TrajgapError
+from ..documents import (
+    BenchResult,
+    OverallStanding,
+    OverallTarget,
+    Reference,
+    Standing,
+    Why,
+    value_or_none,
+)
 from .engines import Engine, outcomes
 from .rows import Row, RowStatus, Trial, against, canonical
 from .standings import bench_result
+from .statistics import quantiles
 from .store import Store
-from .trials import DESCENT, TrialOutcome, origin_of, run_trial
+from .trials import DESCENT, origin_of
 
 SEEDS = 30
 """Runs of each optimiser by default: as many as papers of this field report."""
@@ -261,15 +270,8 @@ def run_bench(
             found[row.key] = against(row, trial.reference)
             report(row)
     left = [trial for trial in plan.trials if trial.key not in found]
-    made = (
-        (TrialOutcome(run_trial(trial), 0.0) for trial in left)
-        if engine is None
-        else outcomes(left, engine)
-    )
-    for outcome in made:
+    for outcome in outcomes(left, engine, store):
         found[outcome.row.key] = outcome.row
-        if store is not None:
-            store.put(outcome.row, outcome.seconds)
         report(outcome.row)
     return Runs(plan, tuple(found[trial.key] for trial in plan.trials))
 
@@ -368,3 +370,79 @@ def _path(function: Callable[..., object]) -> str:
             "a module, so it can be imported"
         )
     return f"{module}:{name}"
+
+
+def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
+    """Results of the same optimisers on several problems, the most runs within 1 % first.
+
+    Empty for a single problem.
+    """
+    if len(results) < 2:
+        return ()
+    least = [min(_median(one) for one in result.standings) for result in results]
+    by_name: dict[str, list[Standing]] = {}
+    firsts: dict[str, int] = {}
+    for result, best in zip(results, least, strict=True):
+        for one in result.standings:
+            by_name.setdefault(one.optimizer, []).append(one)
+            tied = _median(one) <= best + TOLERANCE and np.isfinite(best)
+            firsts[one.optimizer] = firsts.get(one.optimizer, 0) + tied
+    found = [_standing(name, own, firsts[name]) for name, own in by_name.items()]
+    return tuple(sorted(found, key=_order))
+
+
+def _median(standing: Standing) -> float:
+    known = value_or_none(standing.median)
+    return np.inf if known is None else known
+
+
+def _standing(name: str, own: Sequence[Standing], first: int) -> OverallStanding:
+    medians = np.array([_median(one) for one in own])
+    targets = []
+    for same in zip(*(one.targets for one in own), strict=True):
+        rates = np.array([target.rate for target in same])
+        targets.append(
+            OverallTarget(
+                gap=same[0].gap, rate=float(rates.mean()), solved=int((rates >= 0.5).sum())
+            )
+        )
+    return OverallStanding(
+        optimizer=name,
+        problems=len(own),
+        first=first,
+        median=_gap(float(quantiles(medians, [0.5])[0])),
+        worst=_gap(float(medians.max())),
+        failed=sum(one.failed for one in own),
+        targets=tuple(targets),
+    )
+
+
+def _gap(value: float) -> float | Why:
+    why = "on too many problems half of the runs have no answer"
+    return value if np.isfinite(value) else Why(why)
+
+
+def _order(standing: OverallStanding) -> tuple[float, float]:
+    # By the gap that a paper's digits can tell apart.
+    rate = next(target.rate for target in standing.targets if target.gap == 0.01)
+    return -rate, value_or_none(standing.median) or np.inf
+
+
+def relative_rows(results: Iterable[tuple[BenchResult, Runs]]) -> dict[str, list[Row]]:
+    """Rows of every optimiser over all problems, times as multiples of each optimum.
+
+    Functions for one problem, such as `share_of_targets`, then work for all together, with an
+    optimum of 1.
+    """
+    found: dict[str, list[Row]] = {}
+    for result, runs in results:
+        unit = result.optimum.upper
+        for label, rows in runs.by_label.items():
+            found.setdefault(label, []).extend(_relative(row, unit) for row in rows)
+    return found
+
+
+def _relative(row: Row, unit: float) -> Row:
+    feasible = None if row.feasible_time is None else row.feasible_time / unit
+    trace = tuple((at, total / unit) for at, total in row.trace)
+    return replace(row, feasible_time=feasible, trace=trace)

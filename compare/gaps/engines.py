@@ -13,7 +13,8 @@ from typing import Any
 
 from ...problem import LostWork, ProcessError, Processes, TrajgapError
 from .rows import Trial, failed
-from .trials import TrialOutcome, measured_trial
+from .store import Store
+from .trials import TrialOutcome, measured_trial, run_trial
 
 
 @lru_cache(maxsize=1)
@@ -91,13 +92,23 @@ def _threads(client: Any) -> int:
     return max(1, sum(int(threads) for threads in client.nthreads().values()))
 
 
-def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
-    """Run trials; outcomes come as they finish, in any order.
+def outcomes(
+    trials: Iterable[Trial], engine: Engine | None = None, store: Store | None = None
+) -> Iterator[TrialOutcome]:
+    """Run trials, in this process without an engine; outcomes come as they finish, in any order.
 
-    Trials are read one by one, as workers become free, so memory does not grow with their number. A
-    ProcessError says that the engine itself failed; trials that have not returned are then not
-    done.
+    Each row is stored before it is handed over. Trials are read one by one, as workers become free,
+    so memory does not grow with their number. A ProcessError says that the engine itself failed;
+    trials that have not returned are then not done.
     """
+    alone = (TrialOutcome(run_trial(trial), 0.0) for trial in trials)
+    for outcome in alone if engine is None else _run(trials, engine):
+        if store is not None:
+            store.put(outcome.row, outcome.seconds)
+        yield outcome
+
+
+def _run(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     pending: dict[Future[TrialOutcome], Trial] = {}
     try:
         for trial in trials:

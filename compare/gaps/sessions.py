@@ -59,8 +59,7 @@ def run_study(
     left = sum(1 for _ in unfinished(study, store, retry))
     session = StudySession(total=len(study), resumed=len(study) - left)
     progress(session)
-    for outcome in outcomes(unfinished(study, store, retry), engine):
-        store.put(outcome.row, outcome.seconds)
+    for outcome in outcomes(unfinished(study, store, retry), engine, store):
         session = replace(
             session,
             run=session.run + 1,

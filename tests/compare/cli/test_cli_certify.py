@@ -15,7 +15,7 @@ from support.shipped_problems import COVERED_PROBLEMS
 from support.small_certificates import sealed
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.cli.options import ExitCode
-from trajgap.compare.documents import Uncovered
+from trajgap.compare.documents.vocabulary import Uncovered
 from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state

@@ -21,9 +21,6 @@ from trajgap.compare.gaps import (
     Trial,
     band,
     bench,
-    bench_result,
-    compare_pairs,
-    expected_running_time,
     failed,
     measure_gaps,
     plan_bench,
@@ -31,9 +28,16 @@ from trajgap.compare.gaps import (
     share_of_targets,
     share_within,
 )
-from trajgap.compare.gaps.statistics import compare_pair, corrected
-from trajgap.compare.gaps.targets import hit, running_time_interval, success_interval
-from trajgap.compare.pages import bench_picture, write_bench
+from trajgap.compare.gaps.standings import bench_result
+from trajgap.compare.gaps.statistics import compare_pair, compare_pairs, corrected
+from trajgap.compare.gaps.targets import (
+    expected_running_time,
+    hit,
+    running_time_interval,
+    success_interval,
+)
+from trajgap.compare.pages import write_bench
+from trajgap.compare.pages.benches import bench_picture
 from trajgap.heuristics import search_box
 from trajgap.nlp import solve
 from trajgap.problem import CaseError, Limits, Problem, TrajgapError, rest_to_rest

@@ -21,7 +21,6 @@ from trajgap.compare.gaps import (
     Store,
     StudySession,
     Trial,
-    TrialOutcome,
     export_rows,
     load_study,
     on_dask,
@@ -31,6 +30,7 @@ from trajgap.compare.gaps import (
     run_trial,
     study_rows,
 )
+from trajgap.compare.gaps.trials import TrialOutcome
 from trajgap.problem import ProcessError
 
 

@@ -24,13 +24,12 @@ from trajgap.compare.gaps import (
     against,
     canonical,
     check_export,
-    checkpoints,
     export_rows,
     failed,
     run_trial,
-    trace_of,
 )
 from trajgap.compare.gaps.exports import _write_parquet
+from trajgap.compare.gaps.rows import checkpoints, trace_of
 from trajgap.nlp import certificate, certify, exact_problem, problem_seal
 from trajgap.problem import CaseError, Limits, Problem, TrajgapError, three_five_three
 

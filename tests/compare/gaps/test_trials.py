@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
-from trajgap.compare.gaps import RowStatus, canonical, origin_of, run_apart, run_trial
+from trajgap.compare.gaps import RowStatus, canonical, run_apart, run_trial
+from trajgap.compare.gaps.trials import origin_of
 from trajgap.heuristics import KINDS, PSO, run
 from trajgap.problem import Processes, check
 
