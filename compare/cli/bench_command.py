@@ -34,7 +34,7 @@ class RunOptions(Options):
     seeds: Annotated[
         int | None,
         count("Number of runs of each optimiser.", show_default="30; 15 with --against"),
-    ] = (None,)
+    ] = None
     budget: Annotated[
         int | None,
         typer.Option(
@@ -43,22 +43,22 @@ class RunOptions(Options):
             help="Number of evaluations of each run.",
             show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
         ),
-    ] = (None,)
+    ] = None
     handling: Annotated[
         str,
         typer.Option(
             metavar="death-penalty|stretch|rescale",
             help="Treatment of durations that break a limit.",
         ),
-    ] = ("death-penalty",)
+    ] = "death-penalty"
     baselines: Annotated[
         bool,
         typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
-    ] = (True,)
+    ] = True
     seconds: Annotated[
         float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
-    ] = (gaps.SECONDS,)
-    workers: Annotated[int, run_workers()] = (1,)
+    ] = gaps.SECONDS
+    workers: Annotated[int, run_workers()] = 1
     store: Annotated[Path | None, run_store()] = None
 
 
