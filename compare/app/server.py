@@ -159,10 +159,6 @@ def judge_motion(
         raise FormError({"between": str(error).replace("--", "")}) from None
 
 
-_WIDTH, _HEIGHT = 160.0, 84.0
-"""Size of a picture; two stand beside each other at 390 px."""
-
-
 @dataclass(frozen=True)
 class OfferedCurve:
     """A curve of the form: family, name, what tells it apart, and its picture."""
@@ -188,7 +184,8 @@ def offered_curves() -> tuple[OfferedCurve, ...]:
     return tuple(OfferedCurve(*one, _picture(one[0]) if one[0] else Markup()) for one in offered)
 
 
-def _picture(family: str) -> Markup:
+def _picture(family: str, width: float = 160.0, height: float = 84.0) -> Markup:
+    """Angle and acceleration of a curve; two pictures stand beside each other at 390 px."""
     units = {"position_unit": "rad", "jerk": "1", "jerk_unit": "rad/s^3"}
     # Way-points of the pictures, rad: unequal steps and a reversal.
     points = "a\n0\n0.7\n1.2\n0.5"
@@ -201,7 +198,7 @@ def _picture(family: str) -> Markup:
     def placed(at: Array, values: Array, of: Array) -> list[tuple[float, float]]:
         low, high = of.min(), of.max()
         across, down = at / motion.total_time, (high - values) / (high - low)
-        return list(zip(_WIDTH * across, _HEIGHT * down, strict=True))
+        return list(zip(width * across, height * down, strict=True))
 
     first, second = (
         " ".join(f"{x:.1f},{y:.1f}" for x, y in placed(times, values, values))
@@ -212,7 +209,7 @@ def _picture(family: str) -> Markup:
         for x, y in placed(motion.breaks, motion(motion.breaks)[:, 0], angle)
     )
     return Markup(
-        f'<svg viewBox="-4 -4 {_WIDTH + 8:g} {_HEIGHT + 8:g}" role="img" aria-hidden="true">'
+        f'<svg viewBox="-4 -4 {width + 8:g} {height + 8:g}" role="img" aria-hidden="true">'
         f'<polyline class="second" points="{second}"/>'
         f'<polyline class="first" points="{first}"/>{dots}</svg>'
     )
@@ -220,10 +217,6 @@ def _picture(family: str) -> Markup:
 
 ADDRESS = "127.0.0.1"
 """Where the server listens: no other machine reaches it."""
-_LARGEST = 20_000_000
-"""Bytes of a request: half an hour of six joints at 125 rows a second takes that much as text."""
-_PAGES_KEPT = 20
-"""Audits whose pages are kept in memory, the last ones."""
 _TEMPLATE = Path(__file__).parent / "templates" / "form.html"
 """The form, as package data."""
 
@@ -243,8 +236,12 @@ def make_server(port: int = 0) -> BaseWSGIServer:
         raise TrajgapError(f"--port: {port} cannot be used; choose another one") from None
 
 
-def make_form() -> Flask:
-    """Make the form and its pages."""
+def make_form(largest: int = 20_000_000, remembered: int = 20) -> Flask:
+    """Make the form and its pages.
+
+    `largest`: bytes of a request; half an hour of six joints at 125 rows a second takes that much
+    as text. `remembered`: audits whose pages are kept in memory, the last ones.
+    """
     try:
         from flask import Flask, abort, redirect, request
     except ImportError as error:
@@ -253,7 +250,7 @@ def make_form() -> Flask:
             "`python -m pip install flask`"
         ) from None
     app = Flask(__name__, static_folder=None)
-    app.config["MAX_CONTENT_LENGTH"] = _LARGEST
+    app.config["MAX_CONTENT_LENGTH"] = largest
     kept: OrderedDict[int, dict[str, str]] = OrderedDict()
     one_at_a_time = threading.Lock()
 
@@ -296,7 +293,7 @@ def make_form() -> Flask:
                 files = page_files(audit(case).cases[0], links)
                 number = next(reversed(kept), 0) + 1
                 kept[number] = files | {f"{case.id}.toml": text}
-                if len(kept) > _PAGES_KEPT:
+                if len(kept) > remembered:
                     kept.popitem(last=False)
         except FormError as error:
             return form_page(fields, error.faults), 422
@@ -332,7 +329,7 @@ def make_form() -> Flask:
 
     @app.errorhandler(413)
     def _too_large(_: Exception) -> Any:
-        return form_page({}, {"motion": f"larger than {_LARGEST // 10**6} MB"}), 413
+        return form_page({}, {"motion": f"larger than {largest // 10**6} MB"}), 413
 
     return app
 

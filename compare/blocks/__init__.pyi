@@ -18,7 +18,6 @@ from .claims import (
     names as names,
     reached_table as reached_table,
     reference as reference,
-    shown_once as shown_once,
     steps_table as steps_table,
 )
 from .tree import (

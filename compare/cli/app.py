@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from .options import ENDS, INTERRUPTED, check_numbers, command_group
+from .options import ENDS, ExitCode, check_numbers, command_group, with_options
 
 COMMANDS = {
     "cases": "List the published cases.",
@@ -59,7 +59,7 @@ def _loaded(name: str) -> Any:
     found = getattr(import_module(f".{name}_command", __package__), name)
     if not isinstance(found, typer.Typer):
         alone = command_group()
-        alone.command(name, epilog=ENDS)(found)
+        alone.command(name, epilog=ENDS)(with_options(found))
         found = alone
     command = typer.main.get_command(found)
     command.name = name
@@ -69,8 +69,6 @@ def _loaded(name: str) -> Any:
 # The commands of this program.
 app = command_group(cls=_Commands, pretty_exceptions_enable=False)
 
-BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
-"""Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
 _BEGIN = """To begin:
   trajgap audit puma560-mnam-pso-353           judge a published paper
   trajgap new mine.toml --from table.csv       create a case file of your own (see new --help)
@@ -78,8 +76,6 @@ _BEGIN = """To begin:
   trajgap solve points.csv --urdf arm.urdf     find the fastest motion through way-points
 """
 """What `trajgap` without a command says first."""
-_LONGEST = 1600
-"""Characters of an error line, room for eight faults: a longer one quotes the file at length."""
 
 
 def _version(asked: bool) -> None:
@@ -118,15 +114,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         catch_interrupts()
     try:
         code = _run(sys.argv[1:] if arguments is None else arguments)
-        if code != BAD_INPUT:  # said already, where it is that nothing can be written
+        if code != ExitCode.BAD_INPUT:  # said already, where it is that nothing can be written
             sys.stdout.flush()
         return code
     except BrokenPipeError:
-        return CLOSED_PIPE
+        return ExitCode.CLOSED_PIPE
     except OSError as error:
         return _unwritten(error)
     except KeyboardInterrupt:
-        return _fail("interrupted", INTERRUPTED)
+        return _fail("interrupted", ExitCode.INTERRUPTED)
     finally:
         try:
             sys.stdout.flush()
@@ -161,26 +157,26 @@ def _run(arguments: Sequence[str]) -> int:
         usage = getattr(error, "format_message", None)
         if usage is not None:
             about = getattr(getattr(error, "ctx", None), "command_path", "trajgap")
-            return _fail(f"{str(usage()).rstrip('.')}; see `{about} --help`", BAD_INPUT)
+            return _fail(f"{str(usage()).rstrip('.')}; see `{about} --help`", ExitCode.BAD_INPUT)
         if isinstance(error, OSError) and error.filename is None:
             return _unwritten(error)
         if isinstance(error, TrajgapError):
-            return _fail(str(error), BAD_INPUT)
+            return _fail(str(error), ExitCode.BAD_INPUT)
         traceback.print_exc()
-        return _fail("this is a bug in trajgap; please report the lines above", FAULT)
+        return _fail("this is a bug in trajgap; please report the lines above", ExitCode.FAULT)
 
 
 def _unwritten(error: OSError) -> int:
-    return _fail(f"standard output: cannot be written ({error.strerror})", BAD_INPUT)
+    return _fail(f"standard output: cannot be written ({error.strerror})", ExitCode.BAD_INPUT)
 
 
 def _fail(message: str, code: int) -> int:
     from ...problem import visible
 
     line = visible(" ".join(message.split()))
-    if len(line) > _LONGEST:
+    if len(line) > 1600:  # room for eight faults; a longer line quotes the file at length
         # The file stands in front, how to fix it at the end.
-        line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
+        line = f"{line[:800]} ... {line[-800:]}"
     print(f"trajgap: {line}", file=sys.stderr)
     return code
 
@@ -206,7 +202,7 @@ def _end(signum: int, frame: FrameType | None) -> None:
     with suppress(OSError):
         os.write(2, f"{restored}trajgap: interrupted\n".encode())
     # An exception would unwind whatever runs, and could be printed on its way or be lost in a call.
-    os._exit(INTERRUPTED)
+    os._exit(ExitCode.INTERRUPTED)
 
 
 LIBRARIES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")

@@ -34,7 +34,7 @@ from ..documents import (
 )
 from .certifying import read_certificates
 from .input import read_cases
-from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
+from .options import NoCache, ProblemId, ReadingId, count
 from .output import emit, kept_proofs, new_output, progress, say
 
 
@@ -48,10 +48,15 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[
-        int, typer.Option(min=2, max=MOST, help="Number of seeds for each replay.")
-    ] = 100,
-    workers: Workers = None,
+    seeds: Annotated[int, count("Number of seeds for each replay.", least=2)] = 100,
+    workers: Annotated[
+        int | None,
+        count(
+            "Number of processes for the replays; the result does not depend on it. Starting a "
+            "process takes longer than a hundred short replays.",
+            show_default="all cores; 1 for short replays",
+        ),
+    ] = None,
     certify_seconds: Annotated[
         float | None,
         typer.Option(
@@ -89,7 +94,14 @@ def audit(
             show_default="trajgap-audit",
         ),
     ] = None,
-    crate: Crate = None,
+    crate: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.zip",
+            help="Also write an RO-Crate for archives to this new file: case files, pages, JSON, "
+            "certificates and environment.",
+        ),
+    ] = None,
 ) -> int:
     """Audit every claim of the cases, and write pages with pictures."""
     chosen = read_cases(cases or published_ids())

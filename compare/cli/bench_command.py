@@ -14,17 +14,52 @@ from typing import Annotated, Any
 import typer
 
 from ...heuristics import KINDS, optimizer_name
-from ...nlp import Evidence, Solution, printed_problem_or_none, solve
+from ...nlp import Solution
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
 from .. import gaps, pages
 from ..audits import asked_as
 from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
-from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, known, noted
+from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, noted
 from .input import Selected, naming, read_case, select
-from .options import MOST, ProblemId, run_store, run_workers
-from .output import NEVER_RAN, emit, progress, rendered, say
+from .options import ExitCode, Options, ProblemId, count, run_store, run_workers
+from .output import emit, progress, rendered, say
+
+
+@dataclass(frozen=True)
+class RunOptions(Options):
+    """How each optimiser is run."""
+
+    seeds: Annotated[
+        int | None,
+        count("Number of runs of each optimiser.", show_default="30; 15 with --against"),
+    ] = None
+    budget: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=10**7,
+            help="Number of evaluations of each run.",
+            show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
+        ),
+    ] = None
+    handling: Annotated[
+        str,
+        typer.Option(
+            metavar="death-penalty|stretch|rescale",
+            help="Treatment of durations that break a limit.",
+        ),
+    ] = "death-penalty"
+    baselines: Annotated[
+        bool,
+        typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
+    ] = True
+    seconds: Annotated[
+        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
+    ] = gaps.SECONDS
+    workers: Annotated[int, run_workers()] = 1
+    store: Annotated[Path | None, run_store()] = None
 
 
 def bench(
@@ -61,39 +96,7 @@ def bench(
             "--reading", metavar="ID", help="Use this reading instead of the default one."
         ),
     ] = None,
-    seeds: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=MOST,
-            help="Number of runs of each optimiser.",
-            show_default="30; 15 with --against",
-        ),
-    ] = None,
-    budget: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=10**7,
-            help="Number of evaluations of each run.",
-            show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
-        ),
-    ] = None,
-    handling: Annotated[
-        str,
-        typer.Option(
-            metavar="death-penalty|stretch|rescale",
-            help="Treatment of durations that break a limit.",
-        ),
-    ] = "death-penalty",
-    baselines: Annotated[
-        bool,
-        typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
-    ] = True,
-    seconds: Annotated[
-        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
-    ] = gaps.SECONDS,
-    workers: Annotated[int, run_workers()] = 1,
+    run: RunOptions,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
     ] = False,
@@ -111,7 +114,6 @@ def bench(
             metavar="leaderboard", help="Show where the optimisers rank among committed results."
         ),
     ] = None,
-    store: Annotated[Path | None, run_store()] = None,
 ) -> int:
     """Show how far optimisers end from the optimum of a case or suite."""
     chosen = [optimizer_name(name) for text in optimizer for name in text.split(",") if name]
@@ -123,9 +125,7 @@ def bench(
                 raise typer.BadParameter(f"{name} cannot be combined with --against")
         if against != gaps.LEADERBOARD:
             raise CaseError("--against", "", f"{against!r} is unknown; use {gaps.LEADERBOARD}")
-        # Evaluations and seeds are those of the leaderboard's first table.
-        runs = budget or 1000, handling, seeds or 15, seconds
-        return _stand_among(case, chosen, set_here, runs, workers, store)
+        return _stand_among(case, chosen, set_here, run)
     if case is None:
         raise typer.BadParameter("name a CASE, FILE or SUITE, or --against leaderboard")
     # One case, or the instances of the suite that are named.
@@ -138,7 +138,7 @@ def bench(
         pages.check_bench_folder(folder)
     asked = []
     for stated in cases:
-        own = _own(stated, chosen, iterations=budget is None)
+        own = _own(stated, chosen, iterations=run.budget is None)
         settled = own | {
             name: {**own.get(name, {}), **changed} for name, changed in set_here.items()
         }
@@ -147,14 +147,14 @@ def bench(
                 plan = gaps.plan_bench(
                     one.problem,
                     chosen,
-                    seeds=seeds or gaps.SEEDS,
-                    budget=budget,
-                    handling=handling,
+                    seeds=run.seeds or gaps.SEEDS,
+                    budget=run.budget,
+                    handling=run.handling,
                     settings=settled,
-                    baselines=baselines,
+                    baselines=run.baselines,
                     name=stated.id if len(cases) > 1 else f"{stated.id}/{one.problem_id}",
                     reading="" if len(cases) > 1 else one.reading_id,
-                    seconds=seconds,
+                    seconds=run.seconds,
                 )
                 own_coupling = stated.problem(one.problem_id, one.reading_id).coupling
                 if own_coupling is not Coupling.SHARED and len(one.problem.joints) > 1:
@@ -165,14 +165,14 @@ def bench(
                     )
                     plan = replace(plan, notes=(note, *plan.notes))
                 asked.append(_Asked(stated, one, plan))
-    results = _run(asked, workers, store)
+    results = _run(asked, run)
     if folder is not None:
         pages.write_bench(results, folder)
     emit(pages.bench_document(results), _tables, as_json)
     if folder is not None and not as_json:
         say(f"page: {folder / 'index.html'}\n")
     every = [one for result, _ in results for one in result.standings]
-    return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
+    return ExitCode.AGAINST if any(one.failed == one.runs for one in every) else 0
 
 
 def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
@@ -226,9 +226,7 @@ class _Asked:
         return f"{head}; {asked_as(case, self.selected.problem_id, self.selected.reading_id)}"
 
 
-def _run(
-    asked: Sequence[_Asked], workers: int, kept: Path | None
-) -> list[tuple[BenchResult, gaps.Runs]]:
+def _run(asked: Sequence[_Asked], run: RunOptions) -> list[tuple[BenchResult, gaps.Runs]]:
     results = []
     with progress("solve", len(asked)) as solving:
         optima = []
@@ -237,8 +235,8 @@ def _run(
             with naming(one.case.file):
                 optima.append(_optimum(one.case, one.selected))
     with ExitStack() as stack:
-        store = None if kept is None else stack.enter_context(gaps.Store(kept))
-        engine = stack.enter_context(gaps.on_this_machine(workers))
+        store = None if run.store is None else stack.enter_context(gaps.Store(run.store))
+        engine = stack.enter_context(gaps.on_this_machine(run.workers))
         total = sum(len(one.plan.trials) for one in asked)
         step = stack.enter_context(progress("first runs", total, rate=True))
         for one, optimum in zip(asked, optima, strict=True):
@@ -250,21 +248,15 @@ def _run(
 
 
 def _optimum(case: Case, one: Selected) -> Solution | Reference:
-    """What the suite knows of its own; else solved, certified where a certificate is shipped."""
-    instance = instance_of(case)
-    if instance is not None:
-        lower = known(instance.lower or None, "no lower bound is proved")
-        evidence = Evidence(str(instance.evidence))
-        return Reference(upper=instance.upper, lower=lower, evidence=evidence)
-    exact = printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
-    answer = solve(one.problem, exact=exact)
-    if not 0 < answer.best < math.inf:
-        why = answer.why or str(answer.status)
+    """What is known of the optimum, which is certified where a certificate is shipped."""
+    ids = (one.problem_id, one.reading_id)
+    found = gaps.known_optimum(case, one.problem, case.statement(*ids))
+    if isinstance(found, Solution) and not 0 < found.best < math.inf:
         raise TrajgapError(
-            f"{case.file}: {asked_as(case, one.problem_id, one.reading_id)}: no positive optimum "
-            f"from which gaps could be measured ({why})"
+            f"{case.file}: {asked_as(case, *ids)}: no positive optimum from which gaps could be "
+            f"measured ({found.why or found.status})"
         )
-    return answer
+    return found
 
 
 def _tables(document: BenchDocument) -> list[Block]:
@@ -295,25 +287,35 @@ def _stand_among(
     source: str | None,
     names: Sequence[str],
     settings: Mapping[str, Mapping[str, Any]],
-    asked: tuple[int, str, int, float],
-    workers: int,
-    store: Path | None,
+    run: RunOptions,
 ) -> int:
     """Run optimisers on instances of the leaderboard, all by default, and print where they stand.
 
-    `asked`: evaluations, handling, seeds and seconds of the runs.
+    Evaluations and seeds are by default those of the leaderboard's first table.
     """
-    budget, handling, seeds, seconds = asked
+    budget, handling = run.budget or 1000, run.handling
     board = _board(budget, handling)
     instances = _instances(board, source)
     # None of the labels is one of the committed rows.
     taken = {one.optimizer for one in board.standings} | set(board.missing)
     labels = {f"{name} (now)" if name in taken else name: name for name in names}
-    plan = _plan(labels, settings, seeds, budget, handling, seconds, instances)
+    stated = {
+        "format": 1,
+        "budget": budget,
+        "seeds": run.seeds or 15,
+        "seconds": run.seconds,
+        "handlings": handling,
+        "optimizers": [
+            {"name": name, "label": label, "settings": dict(settings.get(name, {}))}
+            for label, name in labels.items()
+        ],
+        "problems": [{"case": SUITE_PREFIX + ",".join(instances)}],
+    }
+    plan = gaps.study_of(stated, "--optimizer", Path())
     with ExitStack() as stack:
-        path = store or Path(stack.enter_context(TemporaryDirectory()), "runs.sqlite")
+        path = run.store or Path(stack.enter_context(TemporaryDirectory()), "runs.sqlite")
         kept = stack.enter_context(gaps.Store(path))
-        engine = stack.enter_context(gaps.on_this_machine(workers))
+        engine = stack.enter_context(gaps.on_this_machine(run.workers))
         step = stack.enter_context(progress("runs", len(plan)))
 
         def show(now: gaps.StudySession) -> None:
@@ -339,7 +341,7 @@ def _stand_among(
             "are the committed rows of the leaderboard."
         ),
     ]))  # fmt: skip
-    return NEVER_RAN if any(one.failed == one.runs for one in standing) else 0
+    return ExitCode.AGAINST if any(one.failed == one.runs for one in standing) else 0
 
 
 def _board(budget: int, handling: str) -> gaps.Board:
@@ -366,30 +368,6 @@ def _instances(board: gaps.Board, source: str | None) -> tuple[str, ...]:
         some = ", ".join(SUITE_PREFIX + name for name in names[:3])
         raise CaseError(source, "", f"not an instance of the leaderboard; it has {some}, ...")
     return chosen
-
-
-def _plan(
-    labels: Mapping[str, str],
-    settings: Mapping[str, Mapping[str, Any]],
-    seeds: int,
-    budget: int,
-    handling: str,
-    seconds: float,
-    instances: Sequence[str],
-) -> gaps.StudyPlan:
-    """The study of these optimisers on these instances, as a study file states it."""
-    blocks = [
-        f"{{ name = {json.dumps(name)}, label = {json.dumps(label)}, settings = "
-        f"{{ {', '.join(f'{json.dumps(k)} = {json.dumps(v)}' for k, v in own.items())} }} }}"
-        for label, name in labels.items()
-        for own in [settings.get(name, {})]
-    ]
-    text = (
-        f"format = 1\nbudget = {budget}\nseeds = {seeds}\nseconds = {seconds}\n"
-        f"handlings = {json.dumps(handling)}\noptimizers = [{', '.join(blocks)}]\n"
-        f"[[problems]]\ncase = {json.dumps(SUITE_PREFIX + ','.join(instances))}\n"
-    )
-    return gaps.parse_study(text, "--optimizer", Path())
 
 
 def _said(one: gaps.Ranked, board: gaps.Board) -> str:

@@ -10,8 +10,8 @@ from ...problem import compare_transcriptions
 from ..blocks import Block, Prose, table
 from ..documents import CaseDiffDocument, DifferingField
 from .input import read_case
-from .options import ENDS, AsJson, Out, Source, command_group
-from .output import answer
+from .options import ENDS, Source, command_group, with_options
+from .output import Answering
 
 # Commands on case files.
 case = command_group(no_args_is_help=True)
@@ -23,20 +23,21 @@ def _case() -> None:
 
 
 @case.command(epilog=ENDS)
+@with_options
 def diff(
     first: Source,
     second: Source,
     words: Annotated[
         bool, typer.Option("--words", help="Compare titles, notes and places in the paper too.")
     ] = False,
-    as_json: AsJson = False,
-    out: Out = None,
+    *,
+    to: Answering,
 ) -> int:
     """Compare two transcriptions of one paper field by field; exit code 1 if they differ."""
     found = compare_transcriptions(read_case(first), read_case(second), words)
     fields = tuple(map(DifferingField.of, found))
     document = CaseDiffDocument(first=first, second=second, differences=fields)
-    answer(lambda: document, _table, as_json, out)
+    to.answer(lambda: document, _table)
     return 1 if fields else 0
 
 

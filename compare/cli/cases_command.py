@@ -6,13 +6,12 @@ from ...problem import published_ids
 from ..blocks import Block, table
 from ..documents import CasesDocument, cases_document
 from .input import read_case
-from .options import AsJson, Out
-from .output import answer
+from .output import Answering
 
 
-def cases(as_json: AsJson = False, out: Out = None) -> int:
+def cases(to: Answering) -> int:
     """List the published cases."""
-    answer(lambda: cases_document(map(read_case, published_ids())), _table, as_json, out)
+    to.answer(lambda: cases_document(map(read_case, published_ids())), _table)
     return 0
 
 

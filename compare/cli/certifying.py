@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import StateFile, certificate_text, covered, fits, read_state, state_document
@@ -31,7 +34,9 @@ from ..blocks import Block, Prose
 from ..documents import CertifiedResult, CertifyDocument, Why, certify_result, json_text
 from .input import Selected, naming, select
 from .motion_results import by_question
+from .options import ExitCode, Options, Selection, count
 from .output import (
+    Answering,
     Steps,
     check_certificates,
     emit,
@@ -43,8 +48,51 @@ from .output import (
     say,
 )
 
-NOT_PROVED = 3
-"""Exit code where an interval is wider than asked for, or nothing is proved."""
+
+@dataclass(frozen=True)
+class ProofOptions(Options):
+    """What a proof is asked for."""
+
+    gap: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            metavar="G",
+            help="With --certify: relative width to reach.",
+            show_default="1e-6",
+        ),
+    ] = None
+    any_curve: Annotated[
+        bool,
+        typer.Option(
+            "--any-curve",
+            help="With --certify: prove a bound for every motion through the way-points, on any "
+            "curve.",
+        ),
+    ] = False
+    certificates: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="With --certify: folder for certificates and for states of stopped runs.",
+            show_default="trajgap-certificates; none with --json",
+        ),
+    ] = None
+    resume: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="With --certify: continue from this state file, which is verified. May be "
+            "repeated.",
+        ),
+    ] = None
+    workers: Annotated[
+        int | None,
+        count(
+            "With --certify: number of cores for the proof; the result does not depend on it.",
+            show_default="all cores",
+        ),
+    ] = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,25 +126,22 @@ class Question:
 
 def certify_case(
     case: Case,
-    problem: str | None,
-    reading: str | None,
-    coupling: str | None,
-    gap: float,
+    chosen: Selection,
+    proof: ProofOptions,
     seconds: float,
     seed: int,
-    subject: Subject,
-    folder: Path | None,
-    resume: Sequence[Path],
-    workers: int,
-    as_json: bool,
-    out: Path | None,
+    to: Answering,
     cache: bool = True,
 ) -> int:
     """Prove an interval of the optimum of each selected problem and reading."""
-    chosen = select(case, problem, reading, coupling)
-    asked = [q for one in chosen for q in _questions(case, one, subject)]
-    states = _states(resume, asked)
-    folder = Path("trajgap-certificates") if folder is None and not as_json else folder
+    subject = Subject.ANY if proof.any_curve else Subject.DECLARED
+    selected = select(case, chosen.problem, chosen.reading, chosen.coupling)
+    asked = [q for one in selected for q in _questions(case, one, subject)]
+    states = _states(proof.resume or [], asked)
+    folder, as_json = proof.certificates, to.as_json
+    if folder is None and not as_json:
+        folder = Path("trajgap-certificates")
+    gap = 1e-6 if proof.gap is None else proof.gap
     if not 0 <= gap < 1:
         why = f"{gap:g} is not a relative width; give 0 or more, below 1"
         raise CaseError(case.file, "--gap", why)
@@ -106,7 +151,7 @@ def certify_case(
     results: list[CertifiedResult] = []
     settled = Outcome.CERTIFIED, Outcome.INFEASIBLE
     unsettled, kept, stop = False, 0, _Stop()
-    with new_output(out) as write:
+    with new_output(to.out) as write:
         with (
             progress("certify", len(asked)) as step,
             naming(case.file),
@@ -129,7 +174,7 @@ def certify_case(
                         seed=seed,
                         resume=states[one.file].document if one.file in states else None,
                         report=stop.reporting(one.words, step),
-                        workers=workers,
+                        workers=proof.workers or os.cpu_count() or 1,
                         cache=cache,
                     )
                 kept += not isinstance(found, str) and found.kept
@@ -145,7 +190,7 @@ def certify_case(
         say(kept_proofs(kept))
     if stop.asked:
         raise KeyboardInterrupt
-    return NOT_PROVED if unsettled else 0
+    return ExitCode.NOT_PROVED if unsettled else 0
 
 
 def read_certificates(folder: Path) -> list[dict[str, Any]]:

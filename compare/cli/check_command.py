@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -25,11 +24,11 @@ from ..documents import (
     known,
     reason,
 )
-from . import options as given
 from .input import Selected, duration_box, naming, read_case, read_durations, select
 from .motion_checking import MotionOptions, check_file
 from .motion_results import by_result, place, reasons
-from .output import answer, progress
+from .options import Selection
+from .output import Answering, progress
 
 
 class MissingOption(typer.BadParameter):
@@ -42,7 +41,14 @@ class MissingOption(typer.BadParameter):
 
 def check(
     context: typer.Context,
-    case: given.MotionSource,
+    case: Annotated[
+        str,
+        typer.Argument(
+            metavar="CASE|FILE",
+            help="A motion: .csv, .parquet, .json, .yaml or a rosbag. With --durations: the id of "
+            "a published case, suite:NAME, or a case file.",
+        ),
+    ],
     durations: Annotated[
         str | None,
         typer.Option(
@@ -51,49 +57,10 @@ def check(
             "states none). Each number counts as rounded to its digits.",
         ),
     ] = None,
-    problem: given.ProblemId = None,
-    reading: given.ReadingId = None,
-    coupling: given.Coupled = None,
-    velocity: given.VelocityLimit = None,
-    acceleration: given.AccelerationLimit = None,
-    deceleration: given.DecelerationLimit = None,
-    jerk: given.JerkLimit = None,
-    position: given.PositionLimit = None,
-    limits: given.LimitsFile = None,
-    urdf: given.UrdfFile = None,
-    interpolation: given.Between = None,
-    noise: given.Noise = None,
-    time_noise: given.TimeNoise = None,
-    units: given.MotionUnits = None,
-    joints: given.JointNames = None,
-    topic: given.Topic = None,
-    tolerance: given.Tolerance = 1e-6,
-    strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict", help="For a motion: exit with 1 unless it passes and all of it is judged."
-        ),
-    ] = False,
-    repair: Annotated[
-        Path | None,
-        typer.Option(
-            "--repair",
-            metavar="OUT",
-            help="For a motion that breaks a limit: write it to this new file in its own format "
-            "(a table as CSV, a message as JSON), slowed down until it keeps every limit.",
-        ),
-    ] = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option(
-            "--plot",
-            metavar="FILE",
-            help="For a motion: draw it with its limits to this new file (.png, .svg or .pdf); "
-            "violations are red.",
-        ),
-    ] = None,
-    as_json: given.AsJson = False,
-    out: given.Out = None,
+    *,
+    chosen: Selection,
+    motion: MotionOptions,
+    to: Answering,
 ) -> int:
     """Judge a motion, or a case's durations, against limits.
 
@@ -103,35 +70,23 @@ def check(
     Durations of a case are judged for all t, as printed and however the digits were rounded.
     Under per-joint coupling each joint is judged separately as well.
     """
-    options = MotionOptions.of(locals())
-    if math.isnan(tolerance):
+    if math.isnan(motion.tolerance):
         raise typer.BadParameter("--tolerance is not a number; give one from 0 to 1")
     if durations is not None:
-        if options.names:
-            raise typer.BadParameter(
-                f"{options.names[0]} is for a motion, but --durations is for a case"
-            )
-        return _check_durations(case, durations, problem, reading, coupling, as_json, out)
-    for name, value in (("problem", problem), ("reading", reading), ("coupling", coupling)):
-        if value is not None:
-            raise typer.BadParameter(f"--{name} is for a case, which needs --durations")
+        for name in motion.given:
+            raise typer.BadParameter(f"{name} is for a motion, but --durations is for a case")
+        return _check_durations(case, durations, chosen, to)
+    for name in chosen.given:
+        raise typer.BadParameter(f"{name} is for a case, which needs --durations")
     if case in published_ids() or case.startswith("suite:") or case.endswith(".toml"):
         raise MissingOption("Missing option '--durations'", ctx=context)
-    return check_file(case, options, as_json, out)
+    return check_file(case, motion, to)
 
 
-def _check_durations(
-    source: str,
-    text: str,
-    problem: str | None,
-    reading: str | None,
-    coupling: str | None,
-    as_json: bool,
-    out: Path | None,
-) -> int:
+def _check_durations(source: str, text: str, chosen: Selection, to: Answering) -> int:
     """Judge printed durations under each selected problem and reading."""
     case = read_case(source)
-    selected = select(case, problem, reading, coupling)
+    selected = select(case, chosen.problem, chosen.reading, chosen.coupling)
     printed = read_durations(text, case.file)
     boxes = [duration_box(case, one, printed) for one in selected]
 
@@ -143,7 +98,7 @@ def _check_durations(
                 results.append(_checked(case, one, box))
         return CheckDocument(results=tuple(results))
 
-    answer(made, lambda shown: _tables(shown, case), as_json, out)
+    to.answer(made, lambda shown: _tables(shown, case))
     return 0
 
 

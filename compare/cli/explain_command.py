@@ -13,8 +13,7 @@ from .. import pages
 from ..audits import EXPLAINED, RULES
 from ..blocks import Block, Prose, table
 from ..documents import ExplainDocument, ExplainedRule, ExplainedWord
-from .options import AsJson, Out
-from .output import answer
+from .output import Answering
 
 
 def explain(
@@ -25,8 +24,8 @@ def explain(
             help="For example TG201 or certified; all are listed by default.",
         ),
     ] = None,
-    as_json: AsJson = False,
-    out: Out = None,
+    *,
+    to: Answering,
 ) -> int:
     """Explain a rule or a word of the reports.
 
@@ -34,7 +33,7 @@ def explain(
     that can be explained is listed.
     """
     summary = _in_full if asked else _listed
-    answer(lambda: _document(asked or []), summary, as_json, out)
+    to.answer(lambda: _document(asked or []), summary)
     return 0
 
 

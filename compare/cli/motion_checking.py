@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
+import typer
 
 from ...problem import CaseError, TrajgapError, Verdict, read_float
 from ...problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits, read_urdf
@@ -30,52 +31,78 @@ from ...problem.motions import (
 from ..documents import MotionCheckDocument, OrWhy, RepairedMotion, Why, json_text, known
 from .input import naming
 from .motion_results import checked_motion, shown_check
-from .output import emit, new_output
+from .options import LimitOptions
+from .output import Answering, emit, new_output
 
 
 @dataclass(frozen=True)
-class MotionOptions:
-    """What the command line says of a motion and its limits, by the names of the options."""
+class MotionOptions(LimitOptions):
+    """What the command line says of a motion, its limits, and what to do with it."""
 
-    velocity: str | None = None
-    acceleration: str | None = None
-    deceleration: str | None = None
-    jerk: str | None = None
-    position: str | None = None
-    limits: Path | None = None
-    urdf: Path | None = None
-    interpolation: str | None = None
-    noise: str | None = None
-    time_noise: float | None = None
-    units: str | None = None
-    joints: str | None = None
-    topic: str | None = None
-    strict: bool = False
-    repair: Path | None = None
-    plot: Path | None = None
-    tolerance: float = 1e-6
+    interpolation: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WORD",
+            help="Interpolation between samples: none, linear, cubic, quintic, spline, or "
+            "controller (as in ROS).",
+            show_default="none; controller for ROS",
+        ),
+    ] = None
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N",
+            help="Uncertainty of the positions: one number, or one per joint; 0 if all are exact.",
+            show_default="half a unit of the last digit in the file",
+        ),
+    ] = None
+    time_noise: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=0.0,
+            help="Uncertainty of the times, s; 0 if they are exact.",
+            show_default="half a unit of the last digit in the file",
+        ),
+    ] = None
+    joints: Annotated[
+        str | None,
+        typer.Option(metavar="A,B,...", help="Names of the columns of a table, in order."),
+    ] = None
+    topic: Annotated[str | None, typer.Option(metavar="/NAME", help="Of a rosbag.")] = None
+    tolerance: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            max=1.0,
+            help="For a motion: relative excess over a limit that still counts as kept.",
+        ),
+    ] = 1e-6
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict", help="For a motion: exit with 1 unless it passes and all of it is judged."
+        ),
+    ] = False
+    repair: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="OUT",
+            help="For a motion that breaks a limit: write it to this new file in its own format "
+            "(a table as CSV, a message as JSON), slowed down until it keeps every limit.",
+        ),
+    ] = None
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="For a motion: draw it with its limits to this new file (.png, .svg or .pdf); "
+            "violations are red.",
+        ),
+    ] = None
 
-    @classmethod
-    def of(cls, given: Mapping[str, Any]) -> MotionOptions:
-        """The options among the arguments of a command."""
-        own = {one.name: given[one.name] for one in fields(cls) if one.name in given}
-        return cls(**own)
 
-    @property
-    def flags(self) -> dict[str, str | None]:
-        """Limits that the command line itself states."""
-        quantities = ("velocity", "acceleration", "deceleration", "jerk", "position")
-        return {name: getattr(self, name) for name in quantities}
-
-    @property
-    def names(self) -> list[str]:
-        """Options that are there, for the message where they do not belong."""
-        asked = [one.name for one in fields(self) if one.name != "tolerance"]
-        there = [name for name in asked if getattr(self, name) not in (None, False)]
-        return [f"--{name.replace('_', '-')}" for name in there]
-
-
-def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | None) -> int:
+def check_file(source: str, options: MotionOptions, to: Answering) -> int:
     """Judge the motion of a file; 1 with ``strict`` unless it passes and all of it is judged."""
     how = None
     if options.interpolation is not None:
@@ -86,7 +113,7 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
     repair, plot = options.repair, options.plot
     kind = None if plot is None else _kind_of_picture(plot)
     with (
-        new_output(out) as write,
+        new_output(to.out) as write,
         new_output(repair, "--repair") as write_motion,
         new_output(plot, "--plot") as write_picture,
         naming(source),
@@ -105,7 +132,7 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
         if kind is not None:
             write_picture(_picture(source, read, limits, how, found, kind))
         write(json_text(document))
-    emit(document, shown_check, as_json)
+    emit(document, shown_check, to.as_json)
     passes = found.verdict is Verdict.PASS and not found.not_judged
     return 1 if options.strict and not passes else 0
 
@@ -210,7 +237,7 @@ def _picture(
 
 
 def stated_limits(
-    joints: Sequence[str], units: Sequence[str], options: MotionOptions
+    joints: Sequence[str], units: Sequence[str], options: LimitOptions
 ) -> tuple[JointLimits, tuple[str, ...]]:
     """What holds for joints: flag before limits file before URDF; and the unit of each joint.
 

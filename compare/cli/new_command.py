@@ -13,8 +13,7 @@ import typer
 
 from ...problem import CHOICES, CaseError, scaffold
 from ...problem.cases import identity_of
-from .motion_checking import MotionOptions
-from .options import Degree, Family
+from .options import CurveOptions, LimitOptions
 from .output import new_output, say, warn
 from .solve_files import limits_of_table
 
@@ -58,8 +57,8 @@ def new(
     case_id: Annotated[
         str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
     ] = None,
-    family: Family = None,
-    degree: Degree = None,
+    *,
+    curve: CurveOptions,
     durations: Annotated[
         str | None,
         typer.Option(
@@ -90,13 +89,13 @@ def new(
         given = {name: unit for name, unit in units.items() if unit is not None}
 
         def written(stated: Mapping[str, str]) -> str:
-            beside = MotionOptions(urdf=urdf, units=stated.get("position"))
+            beside = LimitOptions(urdf=urdf, units=stated.get("position"))
             return scaffold(
                 table,
                 stated,
                 case_id=identity_of(out.stem) if case_id is None else case_id,
-                family=family,
-                degree=degree,
+                family=curve.family,
+                degree=curve.degree,
                 durations=durations,
                 total=total,
                 where=where or "",

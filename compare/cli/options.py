@@ -1,11 +1,15 @@
-"""Arguments and options that several commands share, and what every help text ends with."""
+"""Options that several commands share, records of options, and what every help text ends with."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from functools import wraps
+from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_type_hints
 
 import typer
 
@@ -22,10 +26,23 @@ Exit codes:
 """
 """What every command's --help ends with."""
 
-INTERRUPTED = 130
-"""Exit code: what a shell says of SIGINT."""
-MOST = 10_000
-"""Largest number of starts, seeds and workers: what they make is kept in memory."""
+
+class ExitCode(IntEnum):
+    """How the program ends, as every help text says."""
+
+    AGAINST = 1
+    """A script must not take the answer for a success: what was asked for does not hold, or every
+    run of an optimiser failed."""
+    BAD_INPUT = 2
+    """That of argument parsers."""
+    NOT_PROVED = 3
+    """An interval is wider than asked for, or nothing is proved."""
+    FAULT = 70
+    """EX_SOFTWARE."""
+    INTERRUPTED = 130
+    """What a shell says of SIGINT."""
+    CLOSED_PIPE = 141
+    """What a shell says of SIGPIPE."""
 
 
 def command_group(**settings: Any) -> typer.Typer:
@@ -36,48 +53,67 @@ def command_group(**settings: Any) -> typer.Typer:
     )
 
 
+def with_options(command: Callable[..., int]) -> Callable[..., int]:
+    """The command with the fields of its records as options, in the place of each record."""
+    kinds: dict[str, type[Options]] = {
+        name: kind
+        for name, kind in get_type_hints(command).items()
+        if isinstance(kind, type) and issubclass(kind, Options)
+    }
+    hints = get_type_hints(command, include_extras=True)
+    taken = [
+        Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=hint)
+        for one in signature(command).parameters.values()
+        for name, default, hint in (
+            kinds[one.name].declared()
+            if one.name in kinds
+            else [(one.name, one.default, hints[one.name])]
+        )
+    ]
+
+    @wraps(command)
+    def called(**given: Any) -> int:
+        for name, kind in kinds.items():
+            given[name] = kind(**{field: given.pop(field) for field, _, _ in kind.declared()})
+        return command(**given)
+
+    called.__dict__["__signature__"] = Signature(taken)
+    called.__annotations__ = {one.name: one.annotation for one in taken}
+    return called
+
+
+@dataclass(frozen=True)
+class Options:
+    """A record of options, one a field, that commands take as one parameter."""
+
+    @classmethod
+    def declared(cls) -> list[tuple[str, Any, Any]]:
+        """Name, default and type of each option."""
+        hints = get_type_hints(cls, include_extras=True)
+        return [(one.name, one.default, hints[one.name]) for one in fields(cls)]
+
+    @property
+    def given(self) -> list[str]:
+        """Options that are there, for the message where they do not belong."""
+        there = [name for name, usual, _ in self.declared() if getattr(self, name) != usual]
+        return [f"--{name.replace('_', '-')}" for name in there]
+
+
+def count(said: str, *, least: int = 1, **settings: Any) -> Any:
+    """The option for a number of starts, seeds or workers: what they make is kept in memory."""
+    return typer.Option(min=least, max=10_000, help=said, **settings)
+
+
 # Arguments and options that several commands share.
 Source = Annotated[
     str,
     typer.Argument(metavar="CASE|FILE", help="Id of a published case, suite:NAME, or a case file."),
-]
-AsJson = Annotated[
-    bool, typer.Option("--json", help="Print JSON (see docs/reference/command-line.md).")
-]
-Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Also write the JSON to this new file.")
 ]
 ProblemId = Annotated[
     str | None, typer.Option("--problem", metavar="ID", help="Only this problem of the case.")
 ]
 ReadingId = Annotated[
     str | None, typer.Option("--reading", metavar="ID", help="Only this reading of the case.")
-]
-Coupled = Annotated[
-    str | None,
-    typer.Option(
-        "--coupling", metavar="shared|per-joint", help="Replaces the coupling of the case file."
-    ),
-]
-Workers = Annotated[
-    int | None,
-    typer.Option(
-        min=1,
-        max=MOST,
-        help="Number of processes for the replays; the result does not depend on it. Starting a "
-        "process takes longer than a hundred short replays.",
-        show_default="all cores; 1 for short replays",
-    ),
-]
-ProofWorkers = Annotated[
-    int | None,
-    typer.Option(
-        "--workers",
-        min=1,
-        max=MOST,
-        help="With --certify: number of cores for the proof; the result does not depend on it.",
-        show_default="all cores",
-    ),
 ]
 NoCache = Annotated[
     bool,
@@ -87,140 +123,80 @@ NoCache = Annotated[
         "are verified or judged again before they count.",
     ),
 ]
-Crate = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="FILE.zip",
-        help="Also write an RO-Crate for archives to this new file: case files, pages, JSON, "
-        "certificates and environment.",
-    ),
-]
 
 
-MotionSource = Annotated[
-    str,
-    typer.Argument(
-        metavar="CASE|FILE",
-        help="A motion: .csv, .parquet, .json, .yaml or a rosbag. With --durations: the id of a "
-        "published case, suite:NAME, or a case file.",
-    ),
-]
+@dataclass(frozen=True)
+class Selection(Options):
+    """What is asked of a case; all of it by default."""
+
+    problem: ProblemId = None
+    reading: ReadingId = None
+    coupling: Annotated[
+        str | None,
+        typer.Option(metavar="shared|per-joint", help="Replaces the coupling of the case file."),
+    ] = None
+
+
+def _limit(what: str) -> Any:
+    return typer.Option(metavar="L", help=f"{what}: one for all joints, or L,L,...")
+
+
+@dataclass(frozen=True)
+class LimitOptions(Options):
+    """Limits that the command line states, and units."""
+
+    velocity: Annotated[str | None, _limit("Largest speed, or a range LOW:HIGH")] = None
+    acceleration: Annotated[str | None, _limit("Largest acceleration, or a range LOW:HIGH")] = None
+    deceleration: Annotated[str | None, _limit("Largest acceleration while the speed falls")] = None
+    jerk: Annotated[str | None, _limit("Largest jerk, or a range LOW:HIGH")] = None
+    position: Annotated[str | None, _limit("Range LOW:HIGH of positions")] = None
+    limits: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="MoveIt's joint_limits.yaml, in rad and m.")
+    ] = None
+    urdf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Limits of a URDF, in rad and m.")
+    ] = None
+    units: Annotated[
+        str | None,
+        typer.Option(
+            metavar="UNIT",
+            help="Units of the table and the flags: rad, deg, m, cm or mm; one, or one per joint. "
+            "ROS uses rad and m.",
+            show_default="rad",
+        ),
+    ] = None
+
+    @property
+    def flags(self) -> dict[str, str | None]:
+        """Limits that the command line itself states."""
+        quantities = ("velocity", "acceleration", "deceleration", "jerk", "position")
+        return {name: getattr(self, name) for name in quantities}
+
+
+@dataclass(frozen=True)
+class CurveOptions(Options):
+    """The curve through the way-points of a table."""
+
+    family: Annotated[
+        str | None,
+        typer.Option(
+            help="Curve, by its name in case files or in the literature, or by the degrees of its "
+            "segments: 3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials...",
+            show_default="3-5-3 for four way-points, else a cubic spline",
+        ),
+    ] = None
+    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None
 
 
 def run_workers(usual: str | bool = True) -> Any:
     """The option of `bench` and `study` that says how many processes run; and its default."""
-    said = "Number of processes; the rows do not depend on it."
-    return typer.Option("--workers", min=1, max=MOST, help=said, show_default=usual)
+    return count("Number of processes; the rows do not depend on it.", show_default=usual)
 
 
 def run_store(usual: str | bool = True) -> Any:
     """The option of both that says where runs are kept; and its default."""
     said = "File that keeps finished runs; these are not repeated."
-    return typer.Option("--store", metavar="FILE", help=said, show_default=usual)
-
-
-def _limit(name: str, what: str) -> Any:
-    return typer.Option(f"--{name}", metavar="L", help=f"{what}: one for all joints, or L,L,...")
-
-
-VelocityLimit = Annotated[str | None, _limit("velocity", "Largest speed, or a range LOW:HIGH")]
-AccelerationLimit = Annotated[
-    str | None, _limit("acceleration", "Largest acceleration, or a range LOW:HIGH")
-]
-DecelerationLimit = Annotated[
-    str | None, _limit("deceleration", "Largest acceleration while the speed falls")
-]
-JerkLimit = Annotated[str | None, _limit("jerk", "Largest jerk, or a range LOW:HIGH")]
-PositionLimit = Annotated[str | None, _limit("position", "Range LOW:HIGH of positions")]
-LimitsFile = Annotated[
-    Path | None,
-    typer.Option("--limits", metavar="FILE", help="MoveIt's joint_limits.yaml, in rad and m."),
-]
-UrdfFile = Annotated[
-    Path | None, typer.Option("--urdf", metavar="FILE", help="Limits of a URDF, in rad and m.")
-]
-Between = Annotated[
-    str | None,
-    typer.Option(
-        metavar="WORD",
-        help="Interpolation between samples: none, linear, cubic, quintic, spline, or controller "
-        "(as in ROS).",
-        show_default="none; controller for ROS",
-    ),
-]
-Noise = Annotated[
-    str | None,
-    typer.Option(
-        metavar="N",
-        help="Uncertainty of the positions: one number, or one per joint; 0 if all are exact.",
-        show_default="half a unit of the last digit in the file",
-    ),
-]
-TimeNoise = Annotated[
-    float | None,
-    typer.Option(
-        "--time-noise",
-        metavar="S",
-        min=0.0,
-        help="Uncertainty of the times, s; 0 if they are exact.",
-        show_default="half a unit of the last digit in the file",
-    ),
-]
-MotionUnits = Annotated[
-    str | None,
-    typer.Option(
-        metavar="UNIT",
-        help="Units of the table and the flags: rad, deg, m, cm or mm; one, or one per joint. ROS "
-        "uses rad and m.",
-        show_default="rad",
-    ),
-]
-JointNames = Annotated[
-    str | None, typer.Option(metavar="A,B,...", help="Names of the columns of a table, in order.")
-]
-Topic = Annotated[str | None, typer.Option(metavar="/NAME", help="Of a rosbag.")]
-Tolerance = Annotated[
-    float,
-    typer.Option(
-        min=0.0,
-        max=1.0,
-        help="For a motion: relative excess over a limit that still counts as kept.",
-    ),
-]
-SamplesFile = Annotated[
-    Path | None,
-    typer.Option("--samples", metavar="FILE", help="Write the motion of the answer to this file."),
-]
-Rate = Annotated[
-    float | None,
-    typer.Option(min=1e-3, max=1e6, help="With --samples: rows a second.", show_default="500"),
-]
-Retimed = Annotated[
-    bool,
-    typer.Option(
-        "--retimed",
-        help="With --samples: the path of the answer, re-timed by TOPPRA under velocity and "
-        "acceleration limits only.",
-    ),
-]
-Form = Annotated[
-    str | None,
-    typer.Option(
-        "--format",
-        metavar="csv|ros|ppoly",
-        help="With --samples: rows, a JointTrajectory, or the polynomials.",
-        show_default="csv",
-    ),
-]
-Family = Annotated[
-    str | None,
-    typer.Option(
-        help="Curve, by its name in case files or in the literature, or by the degrees of its "
-        "segments: 3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials...",
-        show_default="3-5-3 for four way-points, else a cubic spline",
-    ),
-]
-Degree = Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")]
+    return typer.Option(metavar="FILE", help=said, show_default=usual)
 
 
 def check_numbers(arguments: Sequence[str]) -> None:

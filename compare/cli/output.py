@@ -10,11 +10,13 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
+import typer
 from rich import box
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -26,12 +28,9 @@ from ...problem import CaseError, new_file, replace_file, try_writing_in, visibl
 from ..blocks import Block, CardShown, Grid, Prose, Terms, table
 from ..documents import Document, json_text
 from ..pages import unwritable
+from .options import Options
 
 D = TypeVar("D", bound=Document)
-
-NEVER_RAN = 1
-"""Exit code where every run of an optimiser failed: as of other answers that a script must not take
-for a success. What the other optimisers came to is printed and written."""
 
 
 def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) -> None:
@@ -45,15 +44,24 @@ def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) ->
     say(text)
 
 
-def answer(
-    made: Callable[[], D], summary: Callable[[D], Iterable[Block]], as_json: bool, out: Path | None
-) -> D:
-    """Make a document, write it to a new file if there is to be one, and print it."""
-    with new_output(out) as write:
-        document = made()
-        write(json_text(document))
-    emit(document, summary, as_json)
-    return document
+@dataclass(frozen=True)
+class Answering(Options):
+    """How a command answers: with a summary for reading, or with JSON."""
+
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON (see docs/reference/command-line.md).")
+    ] = False
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write the JSON to this new file.")
+    ] = None
+
+    def answer(self, made: Callable[[], D], summary: Callable[[D], Iterable[Block]]) -> D:
+        """Make a document, write it to a new file if there is to be one, and print it."""
+        with new_output(self.out) as write:
+            document = made()
+            write(json_text(document))
+        emit(document, summary, self.as_json)
+        return document
 
 
 def warn(doubts: Iterable[str]) -> None:
@@ -238,8 +246,6 @@ def _writing(name: str, field: str) -> Iterator[None]:
         raise CaseError(name, field, unwritable(error)) from None
 
 
-_NARROWEST = 16
-"""Columns that prose keeps in the narrowest window."""
 _STYLES = {
     **dict.fromkeys(("pass", "keeps", "consistent", "optimal", "converged", "supported"), "green"),
     **dict.fromkeys(("violated", "discontinuous", "feasible", "not_attained"), "yellow"),
@@ -258,9 +264,11 @@ class Columns:
     """Table in which columns of prose share what the window leaves.
 
     Whatever else is cut off would say something else, so a table may be wider than the window.
+    `least`: characters that prose keeps in the narrowest window.
     """
 
-    def __init__(self, grid: Grid) -> None:
+    def __init__(self, grid: Grid, least: int = 16) -> None:
+        self._least = least
         self._names = grid.columns
         self._kinds = [grid.mark(i) for i in range(len(grid.columns))]
         self._rows = [[plain(cell.text) for cell in row] for row in grid.rows]
@@ -276,8 +284,8 @@ class Columns:
         for after, i in enumerate(prose, 1):
             others = len(prose) - after
             cut = self._kinds[i] == "…"
-            most = left - others * _NARROWEST if cut else left // (others + 1)
-            shared[i] = min(self._widths[i], max(_NARROWEST, most))
+            most = left - others * self._least if cut else left // (others + 1)
+            shared[i] = min(self._widths[i], max(self._least, most))
             left -= shared[i]
         return shared
 
@@ -287,7 +295,7 @@ class Columns:
         return firm + 2 * (len(self._widths) - 1)
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
-        return Measurement(self._total(_NARROWEST), self._total(options.max_width))
+        return Measurement(self._total(self._least), self._total(options.max_width))
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         widths = self._shared(options.max_width)

@@ -10,25 +10,16 @@ from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
 from ..documents import ShowDocument, capital, quoted, show_document
 from .input import read_case
-from .options import AsJson, Out, ProblemId, ReadingId, Source
-from .output import answer
+from .options import ProblemId, ReadingId, Source
+from .output import Answering
 
 
 def show(
-    case: Source,
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    as_json: AsJson = False,
-    out: Out = None,
+    case: Source, problem: ProblemId = None, reading: ReadingId = None, *, to: Answering
 ) -> int:
     """Show what a case contains, and what it leaves open."""
     found = read_case(case)
-    answer(
-        lambda: show_document(found, problem, reading),
-        lambda shown: _tables(shown, found),
-        as_json,
-        out,
-    )
+    to.answer(lambda: show_document(found, problem, reading), lambda shown: _tables(shown, found))
     return 0
 
 

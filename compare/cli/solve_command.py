@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -22,17 +20,21 @@ from ...nlp import (
 from ...nlp.proofs import KeptNearby
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, CaseError, Coupling, Problem, fit, shown_bound
-from ...verify import Subject
 from ..audits import Pair, Study, in_words
 from ..blocks import Block, Prose, seconds, table
 from ..documents import Answer, SolveDocument, SolveResult, Why, reason, solve_result, value_or_none
-from . import options as given
-from .certifying import certify_case
+from .certifying import ProofOptions, certify_case
 from .input import Selected, naming, read_case, select
-from .motion_checking import MotionOptions
 from .motion_results import by_result, place, reasons
-from .output import answer, new_output, progress
-from .solve_files import AskedSamples, points_case, write_motion, written_lines
+from .options import CurveOptions, LimitOptions, NoCache, Selection, count
+from .output import Answering, new_output, progress
+from .solve_files import (
+    AskedSamples,
+    SampleOptions,
+    points_case,
+    write_motion,
+    written_lines,
+)
 
 
 def solve(
@@ -44,12 +46,9 @@ def solve(
             "with limits as options.",
         ),
     ],
-    problem: given.ProblemId = None,
-    reading: given.ReadingId = None,
-    coupling: given.Coupled = None,
-    starts: Annotated[
-        int, typer.Option(min=1, max=given.MOST, help="Number of starts of the solver.")
-    ] = 4,
+    *,
+    chosen: Selection,
+    starts: Annotated[int, count("Number of starts of the solver.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     prove: Annotated[
         float,
@@ -63,15 +62,7 @@ def solve(
     certify: Annotated[
         bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
     ] = False,
-    gap: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            metavar="G",
-            help="With --certify: relative width to reach.",
-            show_default="1e-6",
-        ),
-    ] = None,
+    proof: ProofOptions,
     seconds: Annotated[
         float | None,
         typer.Option(
@@ -83,48 +74,11 @@ def solve(
             show_default="none; 60 with --certify",
         ),
     ] = None,
-    any_curve: Annotated[
-        bool,
-        typer.Option(
-            "--any-curve",
-            help="With --certify: prove a bound for every motion through the way-points, on any "
-            "curve.",
-        ),
-    ] = False,
-    certificates: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="With --certify: folder for certificates and for states of stopped runs.",
-            show_default="trajgap-certificates; none with --json",
-        ),
-    ] = None,
-    resume: Annotated[
-        list[Path] | None,
-        typer.Option(
-            metavar="FILE",
-            help="With --certify: continue from this state file, which is verified. May be "
-            "repeated.",
-        ),
-    ] = None,
-    workers: given.ProofWorkers = None,
-    velocity: given.VelocityLimit = None,
-    acceleration: given.AccelerationLimit = None,
-    deceleration: given.DecelerationLimit = None,
-    jerk: given.JerkLimit = None,
-    position: given.PositionLimit = None,
-    limits: given.LimitsFile = None,
-    urdf: given.UrdfFile = None,
-    units: given.MotionUnits = None,
-    family: given.Family = None,
-    degree: given.Degree = None,
-    samples: given.SamplesFile = None,
-    rate: given.Rate = None,
-    form: given.Form = None,
-    retimed: given.Retimed = False,
-    no_cache: given.NoCache = False,
-    as_json: given.AsJson = False,
-    out: given.Out = None,
+    stated: LimitOptions,
+    curve: CurveOptions,
+    samples: SampleOptions,
+    no_cache: NoCache = False,
+    to: Answering,
 ) -> int:
     """Solve a case exactly: all its problems under all its readings.
 
@@ -135,56 +89,31 @@ def solve(
 
     With --certify, Ctrl-C leaves the best interval, and a state to continue from.
     """
-    read = _read(case, MotionOptions.of(locals()), family, degree)
-    of_samples = {"--rate": rate, "--retimed": retimed or None, "--format": form}
-    lone = [name for name, value in of_samples.items() if value is not None]
-    if not certify:
-        of_proofs = {
-            "--gap": gap,
-            "--any-curve": any_curve or None,
-            "--certificates": certificates,
-            "--resume": resume or None,
-            "--workers": workers,
-        }
-        for name, value in of_proofs.items():
-            if value is not None:
-                raise typer.BadParameter(f"{name} needs --certify")
-        if samples is None and lone:
-            raise typer.BadParameter(f"{lone[0]} needs --samples")
-        asked = None if samples is None else AskedSamples.of(samples, rate, form, retimed)
-        # What a time limit cuts short is not kept.
-        search = KeptNearby(seconds is None and not no_cache)
+    read = _read(case, stated, curve)
+    if certify:
+        if samples.given:
+            raise typer.BadParameter("--samples needs a solution; leave --certify out")
+        limit = 60.0 if seconds is None else seconds
+        return certify_case(read, chosen, proof, limit, seed, to, not no_cache)
+    for name in proof.given:
+        raise typer.BadParameter(f"{name} needs --certify")
+    if samples.samples is None:
+        for name in samples.given:
+            raise typer.BadParameter(f"{name} needs --samples")
+    # What a time limit cuts short is not kept.
+    search = KeptNearby(seconds is None and not no_cache)
 
-        def solved(one: Selected, retimings: _Retimings) -> tuple[SolveResult, Solution]:
-            return _solved(read, one, starts, seed, prove, search, retimings)
+    def solved(one: Selected, retimings: _Retimings) -> tuple[SolveResult, Solution]:
+        return _solved(read, one, starts, seed, prove, search, retimings)
 
-        return _solve_case(read, problem, reading, coupling, solved, seconds, as_json, out, asked)
-    if samples is not None or lone:
-        raise typer.BadParameter("--samples needs a solution; leave --certify out")
-    return certify_case(
-        read,
-        problem,
-        reading,
-        coupling,
-        1e-6 if gap is None else gap,
-        60.0 if seconds is None else seconds,
-        seed,
-        Subject.ANY if any_curve else Subject.DECLARED,
-        certificates,
-        resume or [],
-        workers or os.cpu_count() or 1,
-        as_json,
-        out,
-        not no_cache,
-    )
+    return _solve_case(read, chosen, solved, seconds, samples.asked(), to)
 
 
-def _read(source: str, stated: MotionOptions, family: str | None, degree: int | None) -> Case:
+def _read(source: str, stated: LimitOptions, curve: CurveOptions) -> Case:
     """A case, or a table of way-points with the limits beside it."""
     if source.lower().endswith(".csv"):
-        return points_case(source, stated, family, degree)
-    curve = [name for name, one in (("--family", family), ("--degree", degree)) if one is not None]
-    for name in (*stated.names, *curve):
+        return points_case(source, stated, curve)
+    for name in (*stated.given, *curve.given):
         raise typer.BadParameter(
             f"{name} is for a table of way-points (CSV); a case states its own"
         )
@@ -193,28 +122,24 @@ def _read(source: str, stated: MotionOptions, family: str | None, degree: int | 
 
 def _solve_case(
     case: Case,
-    problem: str | None,
-    reading: str | None,
-    coupling: str | None,
+    chosen: Selection,
     solved: Callable[[Selected, _Retimings], tuple[SolveResult, Solution]],
     limit: float | None,
-    as_json: bool,
-    out: Path | None,
-    asked: AskedSamples | None = None,
+    asked: AskedSamples | None,
+    to: Answering,
 ) -> int:
     """Solve each selected problem and reading; write the motion of the first if asked to."""
-    selected = select(case, problem, reading, coupling)
+    selected = select(case, chosen.problem, chosen.reading, chosen.coupling)
     problems = list(dict.fromkeys(one.problem_id for one in selected))
     if asked is not None and len(problems) > 1:  # a file holds one motion, of the first reading
         why = f"{len(problems)} problems; add --problem {problems[0]}"
         raise CaseError(case.file, "--samples", why)
-    samples_file = None if asked is None else asked.file
 
     def made() -> SolveDocument:
         results, written = [], None
         retimings: _Retimings = {}
         with (
-            new_output(samples_file, "--samples") as write_samples,
+            new_output(asked.file if asked else None, "--samples") as write_samples,
             progress("solve", len(selected)) as step,
             naming(case.file),
         ):
@@ -228,7 +153,7 @@ def _solve_case(
                     write_samples(text)
         return SolveDocument(results=tuple(results), written=written)
 
-    answer(made, lambda shown: _tables(shown, case), as_json, out)
+    to.answer(made, lambda shown: _tables(shown, case))
     return 0
 
 

@@ -6,8 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 from ...nlp import Solution, retimed_motion
 from ...problem import Case, CaseError, FileLimits, parse_case, scaffold
@@ -24,24 +26,23 @@ from ...problem.motions import (
 from ..audits import in_words
 from ..documents import WrittenMotion, value_or_none
 from .input import Selected, naming
-from .motion_checking import MotionOptions, stated_limits, word_of, words
+from .motion_checking import stated_limits, word_of, words
 from .motion_results import checked_motion
+from .options import CurveOptions, LimitOptions, Options
 from .output import warn
 
 
-def points_case(
-    source: str, options: MotionOptions, family: str | None, degree: int | None
-) -> Case:
+def points_case(source: str, options: LimitOptions, curve: CurveOptions) -> Case:
     """A case without claims: the way-points of a table, and the limits that the options state.
 
-    `source`: CSV, as `scaffold` reads it. `degree`: as in `scaffold`.
+    `source`: CSV, as `scaffold` reads it.
     """
     units = words(options.units) or ("rad",)
     text = scaffold(
         source,
         {"position": ",".join(units)},
-        family=family,
-        degree=degree,
+        family=curve.family,
+        degree=curve.degree,
         limits_of=limits_of_table(source, options),
         warn=lambda doubt: warn([doubt]),
     )
@@ -49,7 +50,7 @@ def points_case(
     return replace(parse_case(text, source), sha256=hashed)
 
 
-def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str, ...]], FileLimits]:
+def limits_of_table(source: str, options: LimitOptions) -> Callable[[tuple[str, ...]], FileLimits]:
     """What finds the limits that options state of the joints of a table of way-points.
 
     Joints that the table only numbers take the names of the URDF, in its order.
@@ -87,19 +88,50 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
+class SampleOptions(Options):
+    """The file into which the motion of an answer goes."""
+
+    samples: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the motion of the answer to this file."),
+    ] = None
+    rate: Annotated[
+        float | None,
+        typer.Option(min=1e-3, max=1e6, help="With --samples: rows a second.", show_default="500"),
+    ] = None
+    format: Annotated[
+        str | None,
+        typer.Option(
+            metavar="csv|ros|ppoly",
+            help="With --samples: rows, a JointTrajectory, or the polynomials.",
+            show_default="csv",
+        ),
+    ] = None
+    retimed: Annotated[
+        bool,
+        typer.Option(
+            "--retimed",
+            help="With --samples: the path of the answer, re-timed by TOPPRA under velocity and "
+            "acceleration limits only.",
+        ),
+    ] = False
+
+    def asked(self) -> AskedSamples | None:
+        """What is to be written; 500 rows a second, as arms of today are commanded, by default."""
+        if self.samples is None:
+            return None
+        form = word_of("--format", self.format or "csv", MotionForm)
+        return AskedSamples(self.samples, self.rate or 500.0, form, self.retimed)
+
+
+@dataclass(frozen=True)
 class AskedSamples:
-    """What is to be written; 500 rows a second, as arms of today are commanded, by default."""
+    """What is to be written."""
 
     file: Path
     rate: float
     form: MotionForm
     retimed: bool
-
-    @classmethod
-    def of(cls, file: Path, rate: float | None, form: str | None, retimed: bool) -> AskedSamples:
-        """What the command line asks for."""
-        wanted = word_of("--format", form or "csv", MotionForm)
-        return cls(file, 500.0 if rate is None else rate, wanted, retimed)
 
 
 def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:

@@ -25,8 +25,8 @@ from .. import gaps
 from ..audits import in_words
 from ..blocks import ONE_BY_ONE, Block, Prose, brief_board, table
 from ..documents import noted, percent
-from .options import INTERRUPTED, run_store, run_workers
-from .output import NEVER_RAN, interrupted_by, progress, rendered, say
+from .options import ExitCode, run_store, run_workers
+from .output import interrupted_by, progress, rendered, say
 
 
 def study(
@@ -108,14 +108,14 @@ def study(
             command = shlex.join([*again, *rest])
             said = f"interrupted; {done}; `{command}` continues from there"
             print(f"\ntrajgap: {said}", file=sys.stderr)
-            return INTERRUPTED
+            return ExitCode.INTERRUPTED
         for one in exports:
             gaps.export_rows(gaps.study_rows(plan, kept), one)
         if summary is not None:
             replace_file(summary, gaps.summaries_text(gaps.summed_up(plan, kept)))
         parts, never_ran = _summary(plan, kept, session, path, exports, again)
         say(rendered(parts))
-    return NEVER_RAN if never_ran else 0
+    return ExitCode.AGAINST if never_ran else 0
 
 
 _COLUMNS = ("optimiser", "~settings", "handling", ">budget", ">runs", ">failed", ">feasible",

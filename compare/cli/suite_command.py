@@ -28,8 +28,8 @@ from ..documents import (
     suite_document,
     value_or_none,
 )
-from .options import ENDS, AsJson, Out, command_group
-from .output import answer, progress, say
+from .options import ENDS, command_group, with_options
+from .output import Answering, progress, say
 
 # Commands of the suite.
 suite = command_group(invoke_without_command=True)
@@ -43,14 +43,15 @@ Folder = Annotated[
 
 
 @suite.callback(epilog=ENDS)
+@with_options
 def _suite(
     context: typer.Context,
     curve: Annotated[
         str | None,
         typer.Option(metavar="WORD", help="Only curves with this word in their name: quintic."),
     ] = None,
-    as_json: AsJson = False,
-    out: Out = None,
+    *,
+    to: Answering,
 ) -> int:
     """List problems whose optimum is known within proved bounds."""
     if context.invoked_subcommand is not None:
@@ -66,23 +67,23 @@ def _suite(
         said = Prose(f"suite {document.version}: {many}")
         return [suite_table(chosen, brief=True), said]
 
-    answer(lambda: suite_document(chosen), summary, as_json, out)
+    to.answer(lambda: suite_document(chosen), summary)
     return 0
 
 
 @suite.command(epilog=ENDS)
+@with_options
 def show(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="An instance, with or without `suite:`.")
     ],
-    as_json: AsJson = False,
-    out: Out = None,
+    to: Answering,
 ) -> int:
     """Show an instance: bounds, where it comes from, how hard it is, how to verify it."""
     one = load_instance(name)
     file = one.certificate_file()
     path = None if file is None else shlex.quote(str(file))
-    answer(lambda: instance_document(one, path), lambda shown: _shown(shown, one), as_json, out)
+    to.answer(lambda: instance_document(one, path), lambda shown: _shown(shown, one))
     return 0
 
 

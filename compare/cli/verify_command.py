@@ -26,8 +26,7 @@ from ..blocks import Prose
 from ..documents import UNNAMED, AskedQuestion, JudgedFile, VerifyDocument, verify_document, worth
 from .certifying import Question, questions_of
 from .input import read_case, select
-from .options import AsJson, Out
-from .output import answer, progress
+from .output import Answering, progress
 
 
 def verify(
@@ -46,8 +45,8 @@ def verify(
     seconds: Annotated[
         float, typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file.")
     ] = 60.0,
-    as_json: AsJson = False,
-    out: Out = None,
+    *,
+    to: Answering,
 ) -> int:
     """Verify certificates independently of the solver.
 
@@ -73,7 +72,7 @@ def verify(
                 verdicts.append((str(path), *_verdict(path, seconds, asked)))
         return verify_document(verdicts)
 
-    answer(made, lambda shown: _verified(shown, stated), as_json, out)
+    to.answer(made, lambda shown: _verified(shown, stated))
     good = all(verdict.proves and not isinstance(about, str) for _, verdict, about in verdicts)
     return 0 if good else 1
 

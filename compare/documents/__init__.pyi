@@ -81,7 +81,6 @@ from .checked import (
     worth as worth,
 )
 from .entry import (
-    SCHEMA as SCHEMA,
     Document as Document,
     Entry as Entry,
     OrWhy as OrWhy,
@@ -94,9 +93,7 @@ from .entry import (
     value_or_none as value_or_none,
 )
 from .export import (
-    DOCUMENTS as DOCUMENTS,
     filled as filled,
-    schema_text as schema_text,
     write_docs as write_docs,
 )
 from .finding import (
@@ -138,7 +135,6 @@ from .vocabulary import (
     TERMS as TERMS,
     TIMES as TIMES,
     UNITS as UNITS,
-    VOCABULARY as VOCABULARY,
     Basis as Basis,
     ClaimVerdict as ClaimVerdict,
     Confidence as Confidence,
@@ -152,7 +148,6 @@ from .vocabulary import (
     Scope as Scope,
     Severity as Severity,
     Speaks as Speaks,
-    Uncovered as Uncovered,
     Urgency as Urgency,
     Words as Words,
     meaning as meaning,

@@ -13,8 +13,6 @@ from .vocabulary import ClaimVerdict
 
 DECIDING = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
 """What decides, the strongest first: a proof outweighs what only agrees."""
-_FEW = 2
-"""Readings that a sentence names; of more it gives the number."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +126,7 @@ def with_readings(
     `computed`: the readings that were computed. `word`: whether its word stands in front: where
     readings give different ones. `why`: whether an implausible reading has its reason beside it.
     """
-    text, notes = _under(one.readings, computed, named, _FEW, why=why)
+    text, notes = _under(one.readings, computed, named, why=why)
     if len(one.each) > 1:
         # Where a sentence names its readings, none is named again.
         first = quoted(one.readings[0], named.labels)
@@ -169,7 +167,7 @@ def under(
     readings: Sequence[str],
     computed: Sequence[str],
     named: Named = NAMELESS,
-    most: int = _FEW,
+    most: int = 2,
     *,
     why: bool = False,
 ) -> str:
@@ -184,7 +182,7 @@ def under(
 
 
 def _under(
-    readings: Sequence[str], computed: Sequence[str], named: Named, most: int, *, why: bool
+    readings: Sequence[str], computed: Sequence[str], named: Named, most: int = 2, *, why: bool
 ) -> tuple[str, list[str]]:
     """The words of `under`, and what stands in brackets behind them."""
     labels, far = named.labels, named.implausible
@@ -197,7 +195,7 @@ def _under(
             return f"under the implausible {which}", [far[readings[0]]] if why else []
         return f"under {which}", [implausibly(readings, far)]
     notes = [implausibly(readings, far)]
-    if len(left) <= _FEW:
+    if len(left) <= 2:
         notes.append(f"not under {enumerated(quoted(one, labels) for one in left)}")
     return f"under {len(readings)} of {len(computed)} readings", notes
 

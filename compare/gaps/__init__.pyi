@@ -2,11 +2,12 @@ from .benching import (
     SECONDS as SECONDS,
     SEEDS as SEEDS,
     BenchPlan as BenchPlan,
-    Entrant as Entrant,
     Runs as Runs,
     bench as bench,
     measure_gaps as measure_gaps,
+    overall as overall,
     plan_bench as plan_bench,
+    relative_rows as relative_rows,
     run_bench as run_bench,
 )
 from .engines import (
@@ -23,22 +24,24 @@ from .exports import (
     rows_text as rows_text,
 )
 from .leaderboard import (
+    LADDER as LADDER,
     LEADERBOARD as LEADERBOARD,
     SIZES as SIZES,
+    SOLVED as SOLVED,
     Board as Board,
     Ranked as Ranked,
+    Summary as Summary,
     boards as boards,
     curve_of as curve_of,
     leaderboard_rows as leaderboard_rows,
     leaderboard_study as leaderboard_study,
     size_of as size_of,
-)
-from .many_problems import (
-    overall as overall,
-    relative_rows as relative_rows,
+    summaries_text as summaries_text,
+    summed_up as summed_up,
 )
 from .optimality_gap import (
     gap as gap,
+    known_optimum as known_optimum,
     reference_of as reference_of,
 )
 from .rows import (
@@ -48,9 +51,7 @@ from .rows import (
     Trial as Trial,
     against as against,
     canonical as canonical,
-    checkpoints as checkpoints,
     failed as failed,
-    trace_of as trace_of,
 )
 from .sessions import (
     StudySession as StudySession,
@@ -59,21 +60,18 @@ from .sessions import (
     unfinished as unfinished,
 )
 from .standings import (
-    bench_result as bench_result,
     target_reached as target_reached,
     totals_of as totals_of,
 )
 from .statistics import (
     SETTLED as SETTLED,
     Spread as Spread,
-    compare_pairs as compare_pairs,
     quantiles as quantiles,
     settled_at as settled_at,
     share_interval as share_interval,
     share_of_luck as share_of_luck,
     share_of_pairs as share_of_pairs,
     spread as spread,
-    vargha_delaney as vargha_delaney,
 )
 from .store import Store as Store
 from .studies import (
@@ -81,21 +79,11 @@ from .studies import (
     StudyProblem as StudyProblem,
     load_study as load_study,
     parse_study as parse_study,
-)
-from .summaries import (
-    LADDER as LADDER,
-    SOLVED as SOLVED,
-    Summary as Summary,
-    read_summaries as read_summaries,
-    summaries_text as summaries_text,
-    summary_of as summary_of,
-    summed_up as summed_up,
+    study_of as study_of,
 )
 from .targets import (
     CURVE_TARGETS as CURVE_TARGETS,
-    TARGETS as TARGETS,
     band as band,
-    expected_running_time as expected_running_time,
     hit as hit,
     share_of_targets as share_of_targets,
     share_within as share_within,
@@ -103,7 +91,5 @@ from .targets import (
 )
 from .trials import (
     DESCENT as DESCENT,
-    TrialOutcome as TrialOutcome,
-    origin_of as origin_of,
     run_trial as run_trial,
 )

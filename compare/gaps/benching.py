@@ -23,13 +23,22 @@ from ...heuristics import (
     search_box,
 )
 from ...nlp import Solution
-from ...problem import Problem, TrajgapError
-from ..documents import BenchResult, Reference
+from ...problem import TOLERANCE, Problem, TrajgapError
+from ..documents import (
+    BenchResult,
+    OverallStanding,
+    OverallTarget,
+    Reference,
+    Standing,
+    Why,
+    value_or_none,
+)
 from .engines import Engine, outcomes
 from .rows import Row, RowStatus, Trial, against, canonical
 from .standings import bench_result
+from .statistics import quantiles
 from .store import Store
-from .trials import DESCENT, TrialOutcome, origin_of, run_trial
+from .trials import DESCENT, origin_of
 
 SEEDS = 30
 """Runs of each optimiser by default: as many as papers of this field report."""
@@ -75,12 +84,8 @@ class Entrant:
     def trials(self, first: Trial, budget: int | None, seeds: range) -> tuple[Trial, ...]:
         """Its runs on one problem: one for each seed, or one in all if it draws no random numbers.
 
-        Parameters
-        ----------
-        first : Trial
-            All that does not depend on the optimiser; its stream follows the entrant's own.
-        budget : int or None
-            As `run_budget` takes it.
+        `first`: all that does not depend on the optimiser; its stream follows the entrant's own.
+        `budget`: as `run_budget` takes it.
         """
         one = replace(
             first,
@@ -143,13 +148,34 @@ def bench(
 
     Parameters
     ----------
+    problem : Problem
+        Searched with one duration vector for all its joints. If it has no upper bound on a
+        duration, searches are restricted to the total that equal durations reach; the notes say so.
+    optimizers : str, callable, or iterable of them
+        As `find_optimizer` takes them; a callable must be a function of a module.
+    seeds : int
+        Runs of each optimiser, 30 by default; one run if it draws no random numbers.
+    budget : int, optional
+        Evaluations of each run; the objective stops a run that asks for more. Without it, a paper's
+        algorithm runs the iterations that its paper prints, and any other optimiser has 6000
+        evaluations.
+    handling : str
+        "death-penalty", "stretch" or "rescale".
+    settings : mapping, optional
+        Settings of an optimiser, by its name.
+    baselines : bool
+        Whether random search, one shared duration, local searches from many starts, and CMA-ES
+        with repair (if pycma is installed) take part.
+    seconds : float
+        Time limit of one run; a run that takes longer has failed.
+    name, reading : str
+        Names of the problem in the rows.
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default in this process, one by one.
     progress : callable, optional
         Called with each row as it arrives.
     **options
-        ``seeds``, ``budget``, ``handling``, ``settings``, ``baselines``, ``seconds``, ``name`` and
-        ``reading``, as `plan_bench` takes them.
+        The other parameters.
 
     Returns
     -------
@@ -159,7 +185,13 @@ def bench(
     Raises
     ------
     TrajgapError
-        As `plan_bench`. Faults of an optimiser during a run are recorded in its rows.
+        If an optimiser or setting is unknown, a package is missing, or the objective cannot judge
+        the problem. Faults of an optimiser during a run are recorded in its rows.
+
+    Notes
+    -----
+    Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
+    optimisers are independent samples, even with equal seeds.
     """
     return run_bench(plan_bench(problem, optimizers, **options), engine, progress)
 
@@ -177,44 +209,7 @@ def plan_bench(
     name: str = "",
     reading: str = "",
 ) -> BenchPlan:
-    """Plan the runs of a bench.
-
-    Parameters
-    ----------
-    problem : Problem
-        Searched with one duration vector for all its joints. If it has no upper bound on a
-        duration, searches are restricted to the total that equal durations reach; the notes say so.
-    optimizers : str, callable, or iterable of them
-        As `find_optimizer` takes them; a callable must be a function of a module.
-    seeds : int
-        Runs of each optimiser; one run if it draws no random numbers.
-    budget : int, optional
-        Evaluations of each run; the objective stops a run that asks for more. Without it, a paper's
-        algorithm runs the iterations that its paper prints, and any other optimiser has 6000
-        evaluations.
-    handling : str
-        "death-penalty", "stretch" or "rescale".
-    settings : mapping, optional
-        Settings of an optimiser, by its name.
-    baselines : bool
-        Whether random search, one shared duration, local searches from many starts, and CMA-ES
-        with repair (if pycma is installed) take part.
-    seconds : float
-        Time limit of one run; a run that takes longer has failed.
-    name, reading : str
-        Names of the problem in the rows.
-
-    Raises
-    ------
-    TrajgapError
-        If an optimiser or setting is unknown, a package is missing, or the objective cannot judge
-        the problem.
-
-    Notes
-    -----
-    Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
-    optimisers are independent samples, even with equal seeds.
-    """
+    """Plan the runs of a bench; parameters and errors as `bench`."""
     judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
     box = search_box(problem)
@@ -275,15 +270,8 @@ def run_bench(
             found[row.key] = against(row, trial.reference)
             report(row)
     left = [trial for trial in plan.trials if trial.key not in found]
-    made = (
-        (TrialOutcome(run_trial(trial), 0.0) for trial in left)
-        if engine is None
-        else outcomes(left, engine)
-    )
-    for outcome in made:
+    for outcome in outcomes(left, engine, store):
         found[outcome.row.key] = outcome.row
-        if store is not None:
-            store.put(outcome.row, outcome.seconds)
         report(outcome.row)
     return Runs(plan, tuple(found[trial.key] for trial in plan.trials))
 
@@ -322,11 +310,8 @@ def enter(
 ) -> tuple[tuple[Entrant, ...], tuple[str, ...]]:
     """Entrants of a bench with their settings, and what was chosen for them.
 
-    Raises
-    ------
-    TrajgapError
-        If an optimiser or a setting is unknown, a package is missing, or a setting is for none of
-        the optimisers.
+    Raises a TrajgapError if an optimiser or a setting is unknown, a package is missing, or a
+    setting is for none of the optimisers.
     """
     notes: list[str] = []
     settings = {optimizer_name(name): own for name, own in settings.items()}
@@ -385,3 +370,79 @@ def _path(function: Callable[..., object]) -> str:
             "a module, so it can be imported"
         )
     return f"{module}:{name}"
+
+
+def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
+    """Results of the same optimisers on several problems, the most runs within 1 % first.
+
+    Empty for a single problem.
+    """
+    if len(results) < 2:
+        return ()
+    least = [min(_median(one) for one in result.standings) for result in results]
+    by_name: dict[str, list[Standing]] = {}
+    firsts: dict[str, int] = {}
+    for result, best in zip(results, least, strict=True):
+        for one in result.standings:
+            by_name.setdefault(one.optimizer, []).append(one)
+            tied = _median(one) <= best + TOLERANCE and np.isfinite(best)
+            firsts[one.optimizer] = firsts.get(one.optimizer, 0) + tied
+    found = [_standing(name, own, firsts[name]) for name, own in by_name.items()]
+    return tuple(sorted(found, key=_order))
+
+
+def _median(standing: Standing) -> float:
+    known = value_or_none(standing.median)
+    return np.inf if known is None else known
+
+
+def _standing(name: str, own: Sequence[Standing], first: int) -> OverallStanding:
+    medians = np.array([_median(one) for one in own])
+    targets = []
+    for same in zip(*(one.targets for one in own), strict=True):
+        rates = np.array([target.rate for target in same])
+        targets.append(
+            OverallTarget(
+                gap=same[0].gap, rate=float(rates.mean()), solved=int((rates >= 0.5).sum())
+            )
+        )
+    return OverallStanding(
+        optimizer=name,
+        problems=len(own),
+        first=first,
+        median=_gap(float(quantiles(medians, [0.5])[0])),
+        worst=_gap(float(medians.max())),
+        failed=sum(one.failed for one in own),
+        targets=tuple(targets),
+    )
+
+
+def _gap(value: float) -> float | Why:
+    why = "on too many problems half of the runs have no answer"
+    return value if np.isfinite(value) else Why(why)
+
+
+def _order(standing: OverallStanding) -> tuple[float, float]:
+    # By the gap that a paper's digits can tell apart.
+    rate = next(target.rate for target in standing.targets if target.gap == 0.01)
+    return -rate, value_or_none(standing.median) or np.inf
+
+
+def relative_rows(results: Iterable[tuple[BenchResult, Runs]]) -> dict[str, list[Row]]:
+    """Rows of every optimiser over all problems, times as multiples of each optimum.
+
+    Functions for one problem, such as `share_of_targets`, then work for all together, with an
+    optimum of 1.
+    """
+    found: dict[str, list[Row]] = {}
+    for result, runs in results:
+        unit = result.optimum.upper
+        for label, rows in runs.by_label.items():
+            found.setdefault(label, []).extend(_relative(row, unit) for row in rows)
+    return found
+
+
+def _relative(row: Row, unit: float) -> Row:
+    feasible = None if row.feasible_time is None else row.feasible_time / unit
+    trace = tuple((at, total / unit) for at, total in row.trace)
+    return replace(row, feasible_time=feasible, trace=trace)

@@ -13,12 +13,8 @@ from typing import Any
 
 from ...problem import LostWork, ProcessError, Processes, TrajgapError
 from .rows import Trial, failed
-from .trials import TrialOutcome, measured_trial
-
-_GRACE = 5.0
-"""Seconds after its time limit in which a process may end a trial by itself."""
-_PATIENCE = 30
-"""Seconds in which a scheduler must answer."""
+from .store import Store
+from .trials import TrialOutcome, measured_trial, run_trial
 
 
 @lru_cache(maxsize=1)
@@ -29,22 +25,15 @@ def _processes() -> Processes:
     return found
 
 
-def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
+def run_apart(trial: Trial, processes: Processes | None = None, grace: float = 5.0) -> TrialOutcome:
     """Run a trial in another process, which is kept for the next one.
 
-    Returns
-    -------
-    TrialOutcome
-        A run whose process ends is repeated once in a new process. The run has failed if that
-        process ends too, or if the run takes longer than the trial allows.
-
-    Raises
-    ------
-    ProcessError
-        If no process can be started.
+    A run whose process ends is repeated once in a new process. The run has failed if that process
+    ends too, or if the run takes longer than the trial allows. A ProcessError says that no process
+    can be started.
     """
     begun = time.monotonic()
-    limit = trial.seconds + _GRACE
+    limit = trial.seconds + grace
     try:
         return (processes or _processes()).run(measured_trial, trial, seconds=limit)
     except LostWork as lost:
@@ -69,13 +58,7 @@ class Engine:
 
 @contextmanager
 def on_this_machine(workers: int) -> Iterator[Engine]:
-    """Run trials in processes of this machine.
-
-    Parameters
-    ----------
-    workers : int
-        1 runs one trial after another, still in a separate process.
-    """
+    """Run trials in processes of this machine; one worker runs one after another."""
     name = f"{workers} {'process' if workers == 1 else 'processes'}"
     # The processes end first: a thread that waits for an answer could not be joined.
     with ThreadPoolExecutor(workers, thread_name_prefix="trial") as threads, Processes() as own:
@@ -83,18 +66,10 @@ def on_this_machine(workers: int) -> Iterator[Engine]:
 
 
 @contextmanager
-def on_dask(address: str) -> Iterator[Engine]:
-    """Run trials on a Dask cluster.
+def on_dask(address: str, patience: float = 30.0) -> Iterator[Engine]:
+    """Run trials on the Dask cluster whose scheduler has an address like "tcp://node1:8786".
 
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, such as "tcp://node1:8786".
-
-    Raises
-    ------
-    ProcessError
-        If Dask is not installed or no scheduler answers.
+    `patience`: s in which the scheduler must answer.
     """
     try:
         from distributed import Client
@@ -103,7 +78,7 @@ def on_dask(address: str) -> Iterator[Engine]:
             'dask: is not installed; run `python -m pip install "trajgap[dask]"`'
         ) from None
     try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        client = Client(address, timeout=patience, set_as_default=False)
     except (OSError, ValueError) as error:
         said = " ".join(str(error).split())
         raise ProcessError(
@@ -117,21 +92,23 @@ def _threads(client: Any) -> int:
     return max(1, sum(int(threads) for threads in client.nthreads().values()))
 
 
-def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
-    """Run trials; outcomes come as they finish, in any order.
+def outcomes(
+    trials: Iterable[Trial], engine: Engine | None = None, store: Store | None = None
+) -> Iterator[TrialOutcome]:
+    """Run trials, in this process without an engine; outcomes come as they finish, in any order.
 
-    Only a few trials are submitted at a time, so memory does not grow with their number.
-
-    Parameters
-    ----------
-    trials : iterable of Trial
-        They are read one by one, as workers become free.
-
-    Raises
-    ------
-    ProcessError
-        If the engine itself fails; trials that have not returned are then not done.
+    Each row is stored before it is handed over. Trials are read one by one, as workers become free,
+    so memory does not grow with their number. A ProcessError says that the engine itself failed;
+    trials that have not returned are then not done.
     """
+    alone = (TrialOutcome(run_trial(trial), 0.0) for trial in trials)
+    for outcome in alone if engine is None else _run(trials, engine):
+        if store is not None:
+            store.put(outcome.row, outcome.seconds)
+        yield outcome
+
+
+def _run(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     pending: dict[Future[TrialOutcome], Trial] = {}
     try:
         for trial in trials:

@@ -40,8 +40,6 @@ COLUMNS: dict[str, str] = {
     for name, kind in (_SPLIT.get(one.name) or {one.name: _KINDS[one.type]}).items()
 }
 """Columns of a table of rows, and what each holds; the meaning is that of `Row`."""
-_BATCH = 1_000
-"""Rows of a Parquet file that are in memory at a time."""
 _NOTHING = sys.float_info.max
 """Total that IOHprofiler's files state before anything feasible is known: they have no infinity."""
 
@@ -49,23 +47,9 @@ _NOTHING = sys.float_info.max
 def export_rows(rows: Iterable[Row], path: Path) -> int:
     """Write rows in the format of the name's ending; the file appears complete or not at all.
 
-    Parameters
-    ----------
-    rows : iterable of Row
-        Read one by one.
-    path : Path
-        Ends with ".csv" or ".parquet"; or with ".ioh", a folder in IOHprofiler's format.
-
-    Returns
-    -------
-    int
-        Rows written. IOHprofiler's format cannot hold a run that evaluated nothing.
-
-    Raises
-    ------
-    CaseError
-        If the name has another ending or is taken, the file cannot be written, or the package
-        for the format is missing.
+    Returns the number of rows written: IOHprofiler's format cannot hold a run that evaluated
+    nothing. `path`: ends with ".csv" or ".parquet", or with ".ioh", a folder in IOHprofiler's
+    format.
     """
     check_export(path)
     try:
@@ -142,7 +126,8 @@ def _arrow(name: str) -> Any:
     return pyarrow
 
 
-def _write_parquet(rows: Iterable[Row], path: Path) -> int:
+def _write_parquet(rows: Iterable[Row], path: Path, batch: int = 1_000) -> int:
+    """Write rows, of which so many are in memory at a time."""
     arrow = _arrow(str(path))
     kinds = {
         "text": arrow.string(),
@@ -154,9 +139,9 @@ def _write_parquet(rows: Iterable[Row], path: Path) -> int:
     schema = arrow.schema([(name, kinds[kind]) for name, kind in COLUMNS.items()])
     count, left = 0, iter(rows)
     with arrow.parquet.ParquetWriter(path, schema) as writer:
-        while batch := [flat(row) for row in islice(left, _BATCH)]:
-            writer.write_table(arrow.Table.from_pylist(batch, schema=schema))
-            count += len(batch)
+        while some := [flat(row) for row in islice(left, batch)]:
+            writer.write_table(arrow.Table.from_pylist(some, schema=schema))
+            count += len(some)
     return count
 
 

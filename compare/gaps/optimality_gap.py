@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 
-from ...nlp import Solution, printed_problem_or_none, solve
-from ...problem import Problem, TrajgapError
+from ...nlp import Evidence, Solution, printed_problem_or_none, solve
+from ...problem import Case, Problem, TrajgapError
 from ...problem.cases import Statement
-from ..documents import UNCERTIFIED, Gap, GapKind, Reference, Why, known
+from ...problem.suite import instance_of
+from ..documents import UNCERTIFIED, Gap, GapKind, Reference, Why, known, value_or_none
 from .rows import Bracket
 
 
 def reference_of(solution: Solution) -> Reference | None:
     """The reference interval of a solution, or None if it has no positive time."""
-    best = solution.best
-    return _reference(solution) if 0 < best < float("inf") else None
+    return _reference(solution) if 0 < solution.best < math.inf else None
 
 
 def _reference(solution: Solution) -> Reference:
@@ -54,7 +54,7 @@ def gap(
         reference = _reference(reference)
     elif not isinstance(reference, Reference):
         reference = Reference(upper=float(reference))
-    if not 0 < reference.upper < float("inf"):
+    if not 0 < reference.upper < math.inf:
         raise TrajgapError(f"gap: the reference {reference.upper} s is not a positive finite time")
     low, high = time if isinstance(time, tuple) else (float(time), float(time))
     if not 0 <= low <= high:
@@ -68,27 +68,27 @@ def gap(
     )
 
 
-def bracket_of(
-    problem: Problem, statement: Statement | None = None, joint: int | None = None
-) -> Bracket | None:
-    """Where the optimum lies: best known, with its certified lower bound where one is proved.
+def known_optimum(
+    case: Case, problem: Problem, statement: Statement, joint: int | None = None
+) -> Solution | Reference:
+    """What the suite states of its own instance, or else what a solve with shared durations finds.
 
-    Parameters
-    ----------
-    problem : Problem
-        Solved with shared durations.
-    statement : Statement, optional
-        The same problem in printed digits, for certificates.
-    joint : int, optional
-        The joint that the problem is about, where the statement is about all.
-
-    Returns
-    -------
-    Bracket or None
-        None if no positive total is attained.
+    `statement`: the same problem in printed digits, for certificates. `joint`: the joint that the
+    problem is about, where the statement is about all.
     """
-    exact = None if statement is None else printed_problem_or_none(statement, joint)
-    found = solve(problem, exact=exact)
-    if not 0 < found.best < math.inf:
-        return None
-    return Bracket(found.best, found.lower_bound)
+    instance = instance_of(case) if joint is None else None
+    if instance is None:
+        return solve(problem, exact=printed_problem_or_none(statement, joint))
+    lower = known(instance.lower or None, "no lower bound is proved")
+    evidence = Evidence(str(instance.evidence))
+    return Reference(upper=instance.upper, lower=lower, evidence=evidence)
+
+
+def bracket_of(
+    case: Case, problem: Problem, statement: Statement, joint: int | None = None
+) -> Bracket | None:
+    """The same as an interval; None if no positive total is attained."""
+    found = known_optimum(case, problem, statement, joint)
+    if isinstance(found, Reference):
+        return Bracket(found.upper, value_or_none(found.lower))
+    return Bracket(found.best, found.lower_bound) if 0 < found.best < math.inf else None

@@ -57,13 +57,7 @@ class Bracket:
 
 
 def canonical(value: object) -> str:
-    """JSON text that is the same for the same content: keys in order, no blanks, no NaN.
-
-    Raises
-    ------
-    TrajgapError
-        If some of it is not JSON.
-    """
+    """JSON text that is the same for the same content: keys in order, no blanks, no NaN."""
     try:
         return json.dumps(
             value, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False
@@ -76,13 +70,7 @@ def canonical(value: object) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """All that determines one run of one optimiser.
-
-    Raises
-    ------
-    TrajgapError
-        If the handling is unknown, the seed negative or the budget not positive.
-    """
+    """All that determines one run of one optimiser."""
 
     problem: Problem
     """Searched with one duration vector for all its joints, whatever its coupling."""
@@ -203,13 +191,7 @@ class Row:
 
     @classmethod
     def read(cls, text: str) -> Row:
-        """The row of its `text`.
-
-        Raises
-        ------
-        TrajgapError
-            If it is not such a text.
-        """
+        """The row of its `text`."""
         try:
             found: dict[str, Any] = json.loads(text)
             found["status"] = RowStatus(found["status"])
@@ -240,10 +222,8 @@ def checkpoints(evaluations: int, per_decade: int = 32) -> tuple[int, ...]:
 def trace_of(totals: Array) -> tuple[tuple[int, float], ...]:
     """Best totals at `checkpoints`, finite ones only, where they changed.
 
-    Parameters
-    ----------
-    totals : ndarray, shape (evaluations,)
-        Best total after each evaluation, s; inf while nothing feasible is known.
+    `totals`: shape (evaluations,), the best total after each, s; inf while nothing feasible is
+    known.
     """
     found: list[tuple[int, float]] = []
     best = math.inf

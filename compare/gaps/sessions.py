@@ -35,13 +35,7 @@ class StudySession:
 
 
 def unfinished(study: StudyPlan, store: Store, retry: bool = False) -> Iterator[Trial]:
-    """Trials without a row in the store.
-
-    Parameters
-    ----------
-    retry : bool
-        Whether those with a failed row are among them.
-    """
+    """Trials without a row in the store; with `retry`, also those with a failed row."""
     for trial in study.trials(store):
         status = store.status(trial.key)
         if status is None or (retry and status is RowStatus.FAILED):
@@ -56,30 +50,16 @@ def run_study(
     retry: bool = False,
     progress: Callable[[StudySession], None] = lambda _: None,
 ) -> StudySession:
-    """Run the trials that are not in the store yet.
+    """Run the trials that are not in the store yet; with `retry`, also those that failed.
 
     However the session ends, every returned row is in the store, and the next session continues.
-
-    Parameters
-    ----------
-    retry : bool
-        Repeat failed runs.
-    progress : callable
-        Called before the first run and after each.
-
-    Raises
-    ------
-    ProcessError
-        If the engine fails.
-    CaseError
-        If the store raises it.
+    `progress`: called before the first run and after each.
     """
     store.note("software", _software())
     left = sum(1 for _ in unfinished(study, store, retry))
     session = StudySession(total=len(study), resumed=len(study) - left)
     progress(session)
-    for outcome in outcomes(unfinished(study, store, retry), engine):
-        store.put(outcome.row, outcome.seconds)
+    for outcome in outcomes(unfinished(study, store, retry), engine, store):
         session = replace(
             session,
             run=session.run + 1,

@@ -52,13 +52,7 @@ def bench_result(
     seeds: int,
     notes: tuple[str, ...] = (),
 ) -> BenchResult:
-    """Standings of optimisers on one problem, the smallest median gap first.
-
-    Parameters
-    ----------
-    rows : mapping of str to sequence of Row
-        Rows of each optimiser, by its label.
-    """
+    """Standings of optimisers on one problem, by their labels, the smallest median gap first."""
     reference = gap(1.0, optimum).reference
     standings = [_standing(label, one, reference) for label, one in rows.items()]
     standings.sort(key=_order)
@@ -126,14 +120,10 @@ def _target(rows: Sequence[Row], optimum: float, wanted: float) -> TargetReached
 
 
 def target_reached(wanted: float, hits: Array, spent: Array) -> TargetReached:
-    """How often and how soon runs come within a gap.
+    """How often and how soon runs come within a relative gap.
 
-    Parameters
-    ----------
-    wanted : float
-        The relative gap.
-    hits, spent : ndarray, shape (runs,)
-        Evaluations until each run reaches it, inf if it does not, and those of the whole run.
+    `hits, spent`: shape (runs,), evaluations until each run reaches it, inf if it does not, and
+    those of the whole run.
     """
     reached = int(np.isfinite(hits).sum())
     lowest, highest = success_interval(reached, hits.size)

@@ -18,18 +18,11 @@ SETTLED = 1e-3
 
 
 def quantiles(values: Array, levels: Sequence[float]) -> Array:
-    """Quantiles over runs, some of which may have no answer.
+    """Quantiles over runs, shape (runs, ...), inf for a run without an answer.
 
     A level that falls between two runs, such as the median of an even number, is the mean of both
     (definition 2 of Hyndman and Fan, "Sample quantiles in statistical packages", 1996). It is
     infinite as soon as either is: numpy's own interpolation says nan there.
-
-    Parameters
-    ----------
-    values : ndarray, shape (runs, ...)
-        inf for a run without answer.
-    levels : sequence of float
-        In 0..1.
     """
     ordered = np.sort(values, axis=0)
     at = np.asarray(levels) * len(ordered)
@@ -56,13 +49,7 @@ class Spread:
 
 
 def spread(totals: Array) -> Spread:
-    """Spread of the totals of one algorithm over its seeds.
-
-    Parameters
-    ----------
-    totals : ndarray, shape (runs,)
-        Seconds; inf for a run without feasible answer, kept and counted.
-    """
+    """Spread of the totals of one algorithm over its seeds, inf for a run without an answer, s."""
     good = totals[np.isfinite(totals)]
     if good.size == 0:
         return Spread(totals.size, totals.size, np.inf, np.inf, np.inf)
@@ -78,17 +65,8 @@ def spread(totals: Array) -> Spread:
 def share_of_pairs(slower: Array, faster: Array, reduction: float) -> float:
     """Share of pairs, one run of each, in which the second is shorter by at least ``reduction``.
 
-    Parameters
-    ----------
-    slower, faster : ndarray
-        Totals, s.
-    reduction : float
-        Relative to the slower total, e.g. 0.109.
-
-    Returns
-    -------
-    float
-        In 0..1; nan if there is no pair of finite totals.
+    nan if there is no pair of finite totals, s. `reduction`: relative to the slower total, e.g.
+    0.109.
     """
     return _share(slower, faster, reduction, np.ones((slower.size, faster.size), dtype=bool))
 
@@ -99,20 +77,11 @@ def share_of_luck(totals: Array, reduction: float) -> float:
 
 
 def share_interval(slower: Array, faster: Array, reduction: float) -> tuple[float, float]:
-    """95 % interval of `share_of_pairs`, by resampling the runs of both algorithms.
+    """95 % interval of `share_of_pairs`, by resampling the runs of both algorithms, two at least.
 
-    Pairs that share a run depend on each other, so runs are resampled, not pairs. Percentiles
-    of 1,000 samples, with a fixed seed.
-
-    Parameters
-    ----------
-    slower, faster : ndarray
-        Totals, s; at least two each.
-
-    Returns
-    -------
-    (float, float)
-        nan if there is no pair of finite totals, or so few finite totals that some sample has none.
+    Pairs that share a run depend on each other, so runs are resampled, not pairs. Percentiles of
+    1,000 samples, with a fixed seed. nan if there is no pair of finite totals, or so few finite
+    totals that some sample has none.
     """
     if not (np.isfinite(slower).any() and np.isfinite(faster).any()):
         return float("nan"), float("nan")
@@ -152,35 +121,16 @@ def settled_at(trace: Array, tolerance: float) -> int:
 
 SAMPLES = 2000
 """Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
-LEAST_RUNS = 5
-"""Runs of each from which on two optimisers are compared: below it the smallest p-value of the
-rank test is above 1 %, whatever the runs say."""
 
 
-def vargha_delaney(first: Array, second: Array) -> float:
-    """Probability that a run of the first is shorter than one of the second, a tie counting half.
+def compare_pair(first: Array, second: Array) -> dict[str, float]:
+    """Shares of pairs of runs that the first wins and that tie, A₁₂, and its 95 % interval.
 
-    Source: Vargha and Delaney, "A critique and improvement of the CL common language effect size
-    statistics of McGraw and Wong", 2000, A₁₂. Computed from the U of scipy's `mannwhitneyu`.
-
-    Parameters
-    ----------
-    first, second : ndarray
-        Totals, s; inf for a run without answer, and such runs tie with each other.
-
-    Returns
-    -------
-    float
-        0.5 if neither is shorter; 1 if the first always is.
-    """
-    return _superiority(*_tied(first, second))
-
-
-def compare_pair(first: Array, second: Array) -> tuple[float, float, float, float, float]:
-    """Share of pairs that the first wins, share of ties, A₁₂, and its 95 % interval.
-
-    Runs are resampled, not pairs, which depend on each other. Percentiles of 2,000 samples, with
-    a fixed seed.
+    A₁₂ is the probability that a run of the first is shorter, a tie counting half: Vargha and
+    Delaney, "A critique and improvement of the CL common language effect size statistics of McGraw
+    and Wong", 2000. Runs without an answer, whose total is inf, tie with each other. Runs are
+    resampled, not pairs, which depend on each other: percentiles of 2,000 samples, with a fixed
+    seed.
     """
     a, b = _tied(first, second)
     shorter = a[:, None] < b[None, :]
@@ -191,46 +141,29 @@ def compare_pair(first: Array, second: Array) -> tuple[float, float, float, floa
     columns = _weights(rng, b.size)
     samples = np.einsum("si,ij,sj->s", rows, won, columns, optimize=True)
     low, high = np.quantile(samples, (0.025, 0.975)).clip(0.0, 1.0)  # rounding of the weights
-    return (
-        float(shorter.mean()), float(equal.mean()), float(won.mean()), float(low), float(high)
-    )  # fmt: skip
+    return {
+        "first_shorter": float(shorter.mean()),
+        "equal": float(equal.mean()),
+        "vargha_delaney": float(won.mean()),
+        "lowest": float(low),
+        "highest": float(high),
+    }
 
 
-def compare_pairs(totals: Mapping[str, Array]) -> tuple[PairCompared, ...]:
-    """Every pair of optimisers, with Mann and Whitney's test and Holm's correction.
+def compare_pairs(totals: Mapping[str, Array], least: int = 5) -> tuple[PairCompared, ...]:
+    """Every pair of optimisers in order, with Mann and Whitney's test and Holm's correction.
 
     The test is for independent samples: the streams of two optimisers differ even for equal seeds
-    (see `bench`), so runs are not paired and no signed-rank test is made.
-
-    Parameters
-    ----------
-    totals : mapping of str to ndarray
-        Totals of each optimiser's runs, s; inf for a run without answer. Those with fewer than
-        `LEAST_RUNS` are left out.
-
-    Returns
-    -------
-    tuple of PairCompared
-        In the order given.
+    (see `bench`), so runs are not paired and no signed-rank test is made. `totals`: of each
+    optimiser's runs, s; inf for a run without an answer. `least`:
+    runs of each that are compared; below five the smallest p-value of the rank test is above 1 %.
     """
-    pairs = list(combinations([n for n, one in totals.items() if one.size >= LEAST_RUNS], 2))
+    pairs = list(combinations([n for n, one in totals.items() if one.size >= least], 2))
     tests = [_p_value(*_tied(totals[a], totals[b])) for a, b in pairs]
-    found = []
-    for (a, b), p in zip(pairs, corrected(tests), strict=True):
-        wins, ties, a12, low, high = compare_pair(totals[a], totals[b])
-        found.append(
-            PairCompared(
-                first=a,
-                second=b,
-                first_shorter=wins,
-                equal=ties,
-                vargha_delaney=a12,
-                lowest=low,
-                highest=high,
-                p_value=p,
-            )
-        )
-    return tuple(found)
+    return tuple(
+        PairCompared(first=a, second=b, p_value=p, **compare_pair(totals[a], totals[b]))
+        for (a, b), p in zip(pairs, corrected(tests), strict=True)
+    )
 
 
 def interval(samples: Array) -> tuple[Array, Array]:
@@ -243,8 +176,6 @@ def interval(samples: Array) -> tuple[Array, Array]:
 def corrected(p_values: Sequence[float]) -> tuple[float, ...]:
     """p-values of several tests made at once, after Holm (1979).
 
-    Examples
-    --------
     >>> corrected([0.01, 0.04, 0.03])
     (0.03, 0.06, 0.06)
     """
@@ -266,12 +197,6 @@ def _tied(first: Array, second: Array) -> tuple[Array, Array]:
     ranks = np.empty(every.size)
     ranks[order] = np.concatenate([[0.0], np.cumsum(apart)])
     return ranks[: first.size], ranks[first.size :]
-
-
-def _superiority(a: Array, b: Array) -> float:
-    from scipy.stats import mannwhitneyu  # half a second, and few need it
-
-    return float(mannwhitneyu(b, a).statistic) / (a.size * b.size)
 
 
 def _p_value(a: Array, b: Array) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sqlite3
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -12,8 +11,8 @@ from typing import Self
 from ...problem import CaseError, TrajgapError, check_regular
 from .rows import ROW_FORMAT, Bracket, Row, RowStatus
 
-_APPLICATION = 0x7472676A
-"""SQLite's application id of our stores, "trgj": a database of somebody else is not touched."""
+_APPLICATION = int.from_bytes(b"trgj", "big")
+"""SQLite's application id of our stores: a database of somebody else is not touched."""
 _TABLES = """
 CREATE TABLE runs (
     key TEXT PRIMARY KEY, status TEXT NOT NULL, row TEXT NOT NULL, seconds REAL NOT NULL
@@ -27,20 +26,11 @@ CREATE TABLE notes (name TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;
 
 
 class Store:
-    """Rows of finished runs by the key of their trial.
+    """Rows of finished runs by the key of their trial, in a file that is created if need be.
 
     Several processes may use one store. A row is on disk before `put` returns, and never changes
-    after that: the first row stays.
-
-    Parameters
-    ----------
-    path : Path
-        Created if it does not exist.
-
-    Raises
-    ------
-    CaseError
-        If it is not a store, is one of another version, or cannot be read or written.
+    after that: the first row stays. A CaseError says that the file is not a store, is one of
+    another version, or cannot be read or written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -114,18 +104,10 @@ class Store:
         self._data.close()
 
     def put(self, row: Row, seconds: float) -> bool:
-        """Keep a row; on disk when this returns.
+        """Keep a row and the duration of its run; on disk when this returns.
 
-        Parameters
-        ----------
-        seconds : float
-            Duration of the run.
-
-        Returns
-        -------
-        bool
-            Whether it is new: a finished row of the same key stays as it is, a failed one is
-            replaced.
+        Returns whether it is new: a finished row of the same key stays as it is, a failed one is
+        replaced.
         """
         with self._telling(), self._writing():
             before = self._data.total_changes
@@ -161,32 +143,10 @@ class Store:
         except TrajgapError as error:
             raise CaseError(str(self.path), "", str(error)) from None
 
-    def tally(self) -> Counter[RowStatus]:
-        """Number of runs by the way they ended."""
-        with self._telling():
-            found = self._data.execute("SELECT status, count(*) FROM runs GROUP BY status")
-            return Counter({RowStatus(status): count for status, count in found})
-
-    def seconds(self) -> float:
-        """Total time of all runs, s."""
-        with self._telling():
-            (found,) = self._data.execute("SELECT total(seconds) FROM runs").fetchone()
-        return float(found)
-
     def optimum(self, problem: str, solve: Callable[[], Bracket | None]) -> Bracket | None:
-        """Interval of the optimum of a problem: the same in every process and session.
+        """Interval of the optimum of a problem, by its hash: the same in every process and session.
 
-        Parameters
-        ----------
-        problem : str
-            Its hash.
-        solve : callable
-            Called once, if the interval is not stored.
-
-        Returns
-        -------
-        Bracket or None
-            None if there is no reference for gaps.
+        None if there is no reference for gaps. `solve`: called once, if the interval is not stored.
         """
         asking = "SELECT upper, lower FROM optima WHERE problem = ?"
         with self._telling():
@@ -205,8 +165,3 @@ class Store:
         """Keep a text about the store, such as the software that computed its rows."""
         with self._telling():
             self._data.execute("INSERT OR REPLACE INTO notes VALUES (?, ?)", (name, text))
-
-    def notes(self) -> dict[str, str]:
-        """What `note` kept."""
-        with self._telling():
-            return dict(self._data.execute("SELECT name, text FROM notes ORDER BY name"))

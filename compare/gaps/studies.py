@@ -5,25 +5,29 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
-from ...heuristics import Bounds, Handling, find_optimizer, judge_of, search_box
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from ...heuristics import Bounds, Handling, find_optimizer, judge_of, optimizer_name, search_box
 from ...problem import (
     Case,
     CaseError,
     Coupling,
     PackageError,
     Problem,
+    Strict,
     TrajgapError,
     load_case,
     parse_toml,
     published_ids,
     read_text,
 )
-from ...problem.cases import SUITE_PREFIX, Statement, check_format, validated
-from ...problem.suite import instance_of, select_instances
+from ...problem.cases import SUITE_PREFIX, check_format, validated
+from ...problem.suite import select_instances
 from .benching import (
     WITHOUT_DRAWS,
     Entrant,
@@ -34,8 +38,89 @@ from .benching import (
 from .optimality_gap import bracket_of
 from .rows import Bracket, Trial, canonical
 from .store import Store
-from .study_file import OptimizerBlock, ProblemsBlock, StudyFile
 from .trials import DESCENT
+
+
+def _several(raw: object) -> object:
+    """One value stands for a list of one."""
+    return raw if isinstance(raw, list | tuple) else [raw]
+
+
+def _plain(raw: object) -> object:
+    """Numbers as JSON knows them: the reader of TOML leaves decimals exact."""
+    if isinstance(raw, Decimal):
+        return float(raw)
+    if isinstance(raw, dict):
+        return {str(key): _plain(value) for key, value in raw.items()}
+    return [_plain(value) for value in raw] if isinstance(raw, list) else raw
+
+
+Ids = Annotated[tuple[str, ...], BeforeValidator(_several), Field(min_length=1)]
+"""One id, or several."""
+Budgets = Annotated[
+    tuple[Annotated[int, Field(strict=True, ge=1, le=10**9)], ...],
+    BeforeValidator(_several),
+    Field(min_length=1),
+]
+"""One number of evaluations, or several: every run is made within each."""
+Settings = Annotated[
+    tuple[Annotated[dict[str, Any], BeforeValidator(_plain)], ...],
+    BeforeValidator(_several),
+    Field(min_length=1),
+]
+"""One table of settings, or several: each is run."""
+
+
+class ProblemsBlock(Strict):
+    """Problems of one case that are searched."""
+
+    case: Annotated[str, Field(min_length=1)]
+    """Id of a published case, instances as "suite:353-*", or path of a case file, from the folder
+    of the study file."""
+    problems: Ids | None = None
+    """Ids of its problems; all by default."""
+    readings: Ids | None = None
+    """Ids of its readings; all by default."""
+    coupling: Coupling | None = None
+    """Instead of what the case says. Under "per-joint" each joint is a problem of its own."""
+
+
+class OptimizerBlock(Strict):
+    """An optimiser, under one or several settings."""
+
+    name: Annotated[str, Field(min_length=1), AfterValidator(optimizer_name)]
+    """As `trajgap bench --optimizer` takes it."""
+    settings: Settings = ({},)
+    """What is left out takes the optimiser's own default."""
+    label: str = ""
+    """Its name in summaries; by default the optimiser's, with its settings if it has some."""
+
+
+class StudyFile(Strict):
+    """The content of a study file."""
+
+    format: Literal[1]
+    """Version of the format."""
+    problems: Annotated[tuple[ProblemsBlock, ...], Field(min_length=1)]
+    """Problems to search."""
+    optimizers: Annotated[tuple[OptimizerBlock, ...], Field(min_length=1)]
+    """Optimisers to run on each of them."""
+    handlings: Annotated[tuple[Handling, ...], BeforeValidator(_several), Field(min_length=1)] = (
+        Handling.DEATH_PENALTY,
+    )
+    """Treatment of vectors that break a limit."""
+    seeds: Annotated[int, Field(strict=True, ge=1, le=10**6)] = 30
+    """Number of seeds: independent runs of each combination."""
+    first_seed: Annotated[int, Field(strict=True, ge=0, le=2**62)] = 0
+    """The first of them; the others follow it."""
+    budget: Budgets | None = None
+    """Evaluations of each run; the objective enforces it. Several are runs of their own, the first
+    budget first. Without it a paper's algorithm makes its own iterations, and anything else has
+    6000."""
+    installed_only: bool = False
+    """Whether optimisers whose package is missing are left out, instead of refused."""
+    seconds: Annotated[float, Field(gt=0, le=86_400.0)] = 600.0
+    """A run that takes longer has failed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,23 +167,14 @@ class StudyPlan:
     def trials(self, store: Store | None = None) -> Iterator[Trial]:
         """Every trial, one by one, in an order that the file alone determines.
 
-        Parameters
-        ----------
-        store : Store, optional
-            Provides and stores the optima from which gaps are measured; without it, rows have no
-            gaps.
+        `store`: provides and stores the optima from which gaps are measured; without it, rows have
+        no gaps.
         """
         for _, trials in self.groups(store):
             yield from trials
 
     def groups(self, store: Store | None = None) -> Iterator[tuple[str, tuple[Trial, ...]]]:
-        """Groups of trials that differ only in their seeds, with the label of their optimiser.
-
-        Parameters
-        ----------
-        store : Store, optional
-            As for `trials`.
-        """
+        """Groups of trials that differ only in their seeds, with the label of their optimiser."""
         asked = self.document
         for budget in asked.budget or (None,):
             for entry in self.problems:
@@ -140,34 +216,20 @@ def _seeds(name: str, asked: StudyFile) -> int:
 
 
 def load_study(path: Path) -> StudyPlan:
-    """Read a study file, and everything that it names.
-
-    Raises
-    ------
-    CaseError
-        One line: the file, the field, and how to fix it.
-    """
+    """Read a study file, and everything that it names."""
     return parse_study(read_text(path), str(path), path.parent)
 
 
 def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
-    """Read the text of a study file.
+    """Read the TOML of a study file.
 
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name for messages.
-    folder : Path
-        Folder to which its paths are relative.
-
-    Raises
-    ------
-    CaseError
-        As `load_study`.
+    `file`: name for messages. `folder`: to which its paths are relative.
     """
-    raw = parse_toml(text, file)
+    return study_of(parse_toml(text, file), file, folder)
+
+
+def study_of(raw: dict[str, Any], file: str, folder: Path) -> StudyPlan:
+    """The study that a table with the keys of a study file states."""
     check_format(raw, file)
     document, missing = _check_optimizers(validated(StudyFile, raw, file), file)
     problems = tuple(
@@ -198,13 +260,7 @@ def _check_repeats(problems: tuple[StudyProblem, ...], document: StudyFile, file
 
 
 def _check_optimizers(document: StudyFile, file: str) -> tuple[StudyFile, tuple[str, ...]]:
-    """The study without optimisers whose package may be missing and is, and what is missing.
-
-    Raises
-    ------
-    CaseError
-        If an optimiser or a setting is unknown.
-    """
+    """The study without optimisers whose package may be missing and is, and what is missing."""
     found, missing = [], []
     for at, block in enumerate(document.optimizers):
         try:
@@ -273,19 +329,9 @@ def _entries(
                 problem=one,
                 box=box,
                 stream=() if joint is None else (joint,),
-                solve=partial(_bracket, case, one, case.statement(pid, rid), joint),
+                solve=partial(bracket_of, case, one, case.statement(pid, rid), joint),
                 notes=bounds_note(one),
             )
-
-
-def _bracket(
-    case: Case, problem: Problem, statement: Statement, joint: int | None
-) -> Bracket | None:
-    """What the suite knows of its own instances; the rest is solved."""
-    known = instance_of(case) if joint is None else None
-    if known is None:
-        return bracket_of(problem, statement, joint)
-    return Bracket(known.upper, known.lower or None)
 
 
 def _pairs(case: Case, block: ProblemsBlock) -> list[tuple[str, str]]:

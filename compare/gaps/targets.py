@@ -33,26 +33,15 @@ def hit(row: Row, total: float) -> float:
 
 
 def expected_running_time(hits: Array, evaluations: Array) -> float:
-    """Evaluations that independent restarts need on average until the first one hits.
+    """Evaluations that independent restarts need on average until the first one hits; inf if none.
 
     The evaluations of all runs, up to the hit if there is one, divided by the number of hits.
     Source: Hansen, Auger, Ros, Mersmann, Tušar, Brockhoff, "COCO: a platform for comparing
     continuous optimizers in a black-box setting", 2021, section 5.
 
-    Parameters
-    ----------
-    hits : ndarray, shape (runs,)
-        Evaluations at the hit; inf if there is none.
-    evaluations : ndarray, shape (runs,)
-        Evaluations of the whole run.
+    `hits, evaluations`: shape (runs,), those at the hit, inf if there is none, and those of the
+    whole run.
 
-    Returns
-    -------
-    float
-        inf if no run hits.
-
-    Examples
-    --------
     >>> expected_running_time(np.array([100.0, np.inf, 300.0]), np.array([500.0, 500.0, 500.0]))
     450.0
     """
@@ -96,19 +85,8 @@ def share_of_targets(
 ) -> tuple[Array, Array]:
     """Share of pairs of run and target that are reached after each number of evaluations (ECDF).
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Rows of one optimiser on one problem; for several problems average the shares.
-    optimum : float
-        s.
-    targets : iterable of float
-        Relative gaps.
-
-    Returns
-    -------
-    evaluations, shares : ndarray
-        Steps: the share holds from its evaluation on.
+    Returns evaluations and shares: a share holds from its evaluation on. `rows`: of one optimiser
+    on one problem; for several problems average the shares. `targets`: relative gaps.
     """
     wanted = list(targets)
     hits = np.array([hit(row, optimum * (1 + g)) for row in rows for g in wanted])
@@ -120,17 +98,8 @@ def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
     """Performance profile against the optimum: share of runs that end within each ratio to it.
 
     Unlike a profile against the best optimiser compared, it does not depend on the other
-    optimisers.
-
-    Parameters
-    ----------
-    totals : ndarray, shape (runs,)
-        s; inf for a run without answer.
-
-    Returns
-    -------
-    ratios, shares : ndarray
-        Steps: the share holds from its ratio on.
+    optimisers. Returns ratios and shares: a share holds from its ratio on. `totals`: shape (runs,),
+    s; inf for a run without an answer.
     """
     ratios, counts = np.unique(totals[np.isfinite(totals)] / optimum, return_counts=True)
     return ratios, np.cumsum(counts) / totals.size
@@ -139,20 +108,8 @@ def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
 def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[Array, Array]:
     """`quantiles` over the runs of the gap of the best so far, at log-spaced evaluations.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Rows of one optimiser; a failed one counts as a run without answer.
-    optimum : float
-        s.
-    levels : sequence of float
-        In 0..1.
-
-    Returns
-    -------
-    evaluations : ndarray, shape (points,)
-    gaps : ndarray, shape (levels, points)
-        Relative; inf if too few runs have an answer.
+    Returns evaluations, shape (points,), and relative gaps, shape (levels, points), inf if too few
+    runs have an answer. A failed row counts as a run without an answer.
     """
     points = sorted({at for row in rows for at, _ in row.trace} | {max(r.budget for r in rows)})
     known = np.full((len(rows), len(points)), np.inf)

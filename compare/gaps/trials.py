@@ -45,15 +45,8 @@ class TrialOutcome:
 def origin_of(optimizer: str) -> str:
     """Where an optimiser comes from: a package with its version, or a hash of its source.
 
-    Parameters
-    ----------
-    optimizer : str
-        As `find_optimizer` takes it.
-
-    Returns
-    -------
-    str
-        "mealpy 3.0.1", "sha256:…" of the module's file for "module:function", else "trajgap 0.1.0".
+    Such as "mealpy 3.0.1", "sha256:…" of the module's file for "module:function", else "trajgap
+    0.1.0". `optimizer`: as `find_optimizer` takes it.
     """
     prefix, _, rest = optimizer.partition(":")
     try:
@@ -109,12 +102,9 @@ def _optimizer(trial: Trial) -> Algorithm[Any] | Search:
 def run_trial(trial: Trial) -> Row:
     """Run a trial in this process.
 
-    Returns
-    -------
-    Row
-        Failed, with a message, if the optimiser is not found, raises an exception, evaluates
-        nothing, breaks a rule or takes too long. Only the engines detect one that hangs in compiled
-        code or ends the process.
+    The row has failed, with a message, if the optimiser is not found, raises an exception,
+    evaluates nothing, breaks a rule or takes too long. Only the engines detect one that hangs in
+    compiled code or ends the process.
     """
     if trial.optimizer == DESCENT:
         return _descended(trial)

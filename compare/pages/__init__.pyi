@@ -1,6 +1,5 @@
 from .benches import (
     bench_document as bench_document,
-    bench_picture as bench_picture,
     check_bench_folder as check_bench_folder,
     write_bench as write_bench,
 )

@@ -87,10 +87,6 @@ def one_unit(statement: Statement, quantity: str, joints: Sequence[int]) -> bool
     return len(found) == 1
 
 
-_FEW = 3
-"""Other readings of a problem that still get a picture each, and searches that stand open."""
-
-
 def first_waterfall(one: CaseAudit) -> Waterfall | None:
     """That of the first problem under the default reading, which stands beside the card."""
     main = one.study.main_reading
@@ -108,8 +104,11 @@ def card_picture(one: CaseAudit) -> Drawn | None:
     return pictured(waterfall_picture(waterfall, title=title, narrow=True), "time", inside=True)
 
 
-def where_time_goes(one: CaseAudit) -> Section:
-    """Distances under the default reading; pictures and steps of all readings folded."""
+def where_time_goes(one: CaseAudit, few: int = 3) -> Section:
+    """Distances under the default reading; pictures and steps of all readings folded.
+
+    `few`: other readings of a problem that still get a picture each.
+    """
     main = one.study.main_reading
     blocks: list[Block] = []
     for pid in dict.fromkeys(w.problem for w in one.waterfalls):
@@ -122,23 +121,26 @@ def where_time_goes(one: CaseAudit) -> Section:
                 blocks.append(distances_table(waterfall, shown).filled)
                 notes = [Prose(said, "note") for said in waterfall.without_optimum]
                 blocks += [note for note in notes if note not in blocks]
-            if own_reading or len(others) <= _FEW:
+            if own_reading or len(others) <= few:
                 title = f"{'Picture and notes' if own_reading else 'Other reading'}: {shown}"
                 inside = _drawn(one, waterfall), steps_table(waterfall)
                 blocks.append(Folded(title, inside))
-        if len(others) > _FEW:
+        if len(others) > few:
             title = f"Other readings, step by step: {problem_name(one, pid)}"
             blocks.append(Folded(title, (_side_by_side(one, pid, others),)))
     return Section("waterfall", "Distance from the optimum", tuple(blocks))
 
 
-def reached_runs(one: CaseAudit) -> Section:
-    """How near each of the paper's algorithms gets, with every run between optimum and print."""
+def reached_runs(one: CaseAudit, few: int = 3) -> Section:
+    """How near each of the paper's algorithms gets, with every run between optimum and print.
+
+    `few`: searches that stand open.
+    """
     blocks: list[Block] = []
     for at, (title, runs) in enumerate(by_search(one.reached).items()):
         picture = reached_picture(runs, one.waterfalls, title=title)
         own = reached_table(runs, title), pictured(picture, "reached", str(at))
-        blocks += own if at < _FEW else [Folded(title, own)]
+        blocks += own if at < few else [Folded(title, own)]
     if blocks:
         meaning = Folded("How to read this", (Prose(REACHED_MEANING, "note"),))
         blocks = [Prose(str(one.reached[0]), "lead"), *blocks, meaning]

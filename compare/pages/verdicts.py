@@ -40,31 +40,32 @@ from ..documents import (
 )
 from .numbers import asked_cells, both_units, one_unit, problem_cell
 
-_OPEN_WORDS = 30
-"""Words of a reason that stand in the open; what goes beyond is a fold away."""
 
+def against(one: CaseAudit, words: int = 30) -> Section:
+    """Claims that are refuted, contradicted or depend on the reading, and what lies behind.
 
-def against(one: CaseAudit) -> Section:
-    """Claims that are refuted, contradicted or depend on the reading, and what lies behind."""
+    `words`: of a reason that stand in the open; what goes beyond is a fold away.
+    """
     chosen = [j for verdict in AGAINST for j in one.judgements if j.verdict is verdict]
-    blocks: list[Block] = [*claims_shown(one.document, chosen, words=_OPEN_WORDS)]
+    blocks: list[Block] = [*claims_shown(one.document, chosen, words=words)]
     causes = [c for c in one.causes if not _covered(one, c)]
     if causes:
-        blocks += [Prose("The causes", "heading"), *(b for c in causes for b in _behind(one, c))]
+        behind = [block for cause in causes for block in _behind(one, cause, words)]
+        blocks += [Prose("The causes", "heading"), *behind]
     title = "Evidence against printed statements"
     if chosen:
         title = "Claims refuted, contradicted or dependent on the reading"
     return Section("against", title, tuple(blocks))
 
 
-def folded_claims(one: CaseAudit) -> Iterator[Section]:
-    """Supported claims, then those that cannot be checked, each behind a fold."""
+def folded_claims(one: CaseAudit, words: int = 30) -> Iterator[Section]:
+    """Supported claims, then those that cannot be checked, each behind a fold; `words` as there."""
     for verdict in (ClaimVerdict.SUPPORTED, ClaimVerdict.NOT_CHECKABLE):
         own = [j for j in one.judgements if j.verdict is verdict]
         beside = worth_little(own)
         title = f"{len(own)} claim{'' if len(own) == 1 else 's'} {verdict}"
         title += f": {beside}" if beside else ""
-        found = tuple(claims_shown(one.document, own, words=_OPEN_WORDS))
+        found = tuple(claims_shown(one.document, own, words=words))
         yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
 
 
@@ -75,9 +76,9 @@ def _covered(one: CaseAudit, cause: Cause) -> bool:
     return any(j.claim == cause.claim and j.verdict in AGAINST for j in one.judgements)
 
 
-def _behind(one: CaseAudit, cause: Cause) -> Iterator[Block]:
+def _behind(one: CaseAudit, cause: Cause, words: int) -> Iterator[Block]:
     """One cause, what would explain it, and the claims that fall with it."""
-    says, _ = opened(plainly(one.case, cause, names(one.document).implausible), _OPEN_WORDS)
+    says, _ = opened(plainly(one.case, cause, names(one.document).implausible), words)
     yield Prose(" ".join(says), word=cause.severity)
     # The one reading of a cause stands in front of it already.
     known = len(cause.readings) == 1

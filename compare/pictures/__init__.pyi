@@ -1,6 +1,5 @@
 from .arm import ArmMotion as ArmMotion, arm_picture as arm_picture
 from .drawing import (
-    DARK as DARK,
     KINDS as KINDS,
     THEME as THEME,
     Picture as Picture,

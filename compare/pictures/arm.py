@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
 
@@ -14,10 +14,6 @@ from numpy.typing import ArrayLike
 from ...problem import Array, Chain, TrajgapError, forward_kinematics, link_frames, visible
 from .drawing import BLUE, GREEN, ORANGE, RED
 
-_TURN, _TILT = np.deg2rad(-55.0), np.deg2rad(22.0)
-"""Where the eye stands: beside the arm and a little above, so no axis points at it."""
-_WIDE, _HIGH, _ROOM = 300.0, 280.0, 14.0
-"""Size of one panel and its margin, in its own units: three stand side by side on a page."""
 _COLOURS = {ORANGE: "orange", BLUE: "blue", GREEN: "green", RED: "red"}
 """Of the motions, in order, with the variables of a theme that replace them."""
 
@@ -117,30 +113,38 @@ def _static(name: str) -> str:
     return (Path(__file__).parent / "static" / name).read_text(encoding="utf-8")
 
 
+@dataclass
 class _View:
-    """Parallel projection that fits all points into a panel."""
+    """Parallel projection that fits all points into a panel, of which three stand side by side."""
 
-    def __init__(self, points: Array) -> None:
-        both = np.vstack([points, points * (1, 1, 0)])
-        plane = _projected(both)
+    points: InitVar[Array]
+    turn: float = np.deg2rad(-55.0)
+    tilt: float = np.deg2rad(22.0)
+    """The eye stands beside the arm and a little above, so no axis points at it."""
+    wide: float = 300.0
+    high: float = 280.0
+    room: float = 14.0
+    """Size of a panel and its margin, in its own units."""
+
+    def __post_init__(self, points: Array) -> None:
+        plane = self._projected(np.vstack([points, points * (1, 1, 0)]))
         self.low = plane.min(axis=0)
-        size = np.maximum(plane.max(axis=0) - self.low, 1e-9)
-        self.scale = float(min((_WIDE - 2 * _ROOM) / size[0], (_HIGH - 2 * _ROOM) / size[1]))
+        inside = np.array([self.wide, self.high]) - 2 * self.room
+        self.scale = float((inside / np.maximum(np.ptp(plane, axis=0), 1e-9)).min())
 
     def __call__(self, points: Array) -> Array:
-        plane = (_projected(points) - self.low) * self.scale
-        return np.column_stack([plane[:, 0] + _ROOM, _HIGH - _ROOM - plane[:, 1]])
+        plane = (self._projected(points) - self.low) * self.scale
+        return np.column_stack([plane[:, 0] + self.room, self.high - self.room - plane[:, 1]])
 
     def line(self, points: Array) -> str:
         """Points of a polyline; a tenth of a unit is far below what a screen shows."""
         return " ".join(f"{x:.1f},{y:.1f}" for x, y in self(points))
 
-
-def _projected(points: Array) -> Array:
-    x, y, z = points.T
-    across = x * np.cos(_TURN) - y * np.sin(_TURN)
-    depth = x * np.sin(_TURN) + y * np.cos(_TURN)
-    return np.column_stack([across, z * np.cos(_TILT) + depth * np.sin(_TILT)])
+    def _projected(self, points: Array) -> Array:
+        x, y, z = points.T
+        across = x * np.cos(self.turn) - y * np.sin(self.turn)
+        depth = x * np.sin(self.turn) + y * np.cos(self.turn)
+        return np.column_stack([across, z * np.cos(self.tilt) + depth * np.sin(self.tilt)])
 
 
 def _panel(
@@ -152,7 +156,7 @@ def _panel(
     dark = f"var(--{_COLOURS[colour]}, {colour})"
     return (
         f'<div>\n<p><strong>{label}</strong> <span class="now">0.00 of {total}</span></p>\n'
-        f'<svg viewBox="0 0 {_WIDE:g} {_HIGH:g}" role="img" '
+        f'<svg viewBox="0 0 {view.wide:g} {view.high:g}" role="img" '
         f'aria-labelledby="{name}-title {name}-desc">\n'
         f'<title id="{name}-title">{label}, {total}</title>\n'
         f'<desc id="{name}-desc">The arm with joints at the origins of its frames, the way of its '

@@ -6,7 +6,7 @@ import io
 import math
 import re
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any, Literal, TypeAlias
 from xml.sax.saxutils import escape
 
 from matplotlib import style
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -109,18 +110,34 @@ def series(at: int) -> tuple[str, Line]:
     return colours[at % len(colours)], lines[at % len(lines)]
 
 
-def finish(figure: Picture, note: str = "", width: int = 105) -> None:
-    """Write title and note, the title in so many characters a line, and settle the layout."""
-    figure.suptitle(shown(figure.title, width, 2), x=0.005, ha="left", fontsize=11, weight="bold")
-    if note:
-        figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
-    for axes in figure.axes:
-        _settle_titles(axes)
-    # The layout moves a little with every drawing; frozen, the same figure gives the same bytes.
-    layout = figure.get_layout_engine()
-    if layout is not None:
-        layout.execute(figure)
-    figure.set_layout_engine("none")
+@contextmanager
+def picture(
+    title: str, description: str, width: float, height: float, note: str = "", line: int = 105
+) -> Iterator[Picture]:
+    """A picture that is drawn inside: then title and note are written and the layout settles.
+
+    `width, height`: inches. `note`: below it. `line`: characters in a line of the title.
+    """
+    with drawing():
+        figure = Picture(title, description, width, height)
+        yield figure
+        figure.suptitle(shown(title, line, 2), x=0.005, ha="left", fontsize=11, weight="bold")
+        if note:
+            figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
+        for axes in figure.axes:
+            _settle_titles(axes)
+        # The layout moves a little with every drawing; frozen, the same figure gives the same
+        # bytes.
+        layout = figure.get_layout_engine()
+        if layout is not None:
+            layout.execute(figure)
+        figure.set_layout_engine("none")
+
+
+def legend(holder: Axes | Picture, signs: Mapping[str, Artist], **place: Any) -> None:
+    """Write what signs mean, each with its words; below the picture unless the place is given."""
+    where = {"loc": "outside lower left"} if isinstance(holder, Picture) else {}
+    holder.legend(list(signs.values()), list(signs), **where | place)
 
 
 def _settle_titles(axes: Axes) -> None:

@@ -26,10 +26,9 @@ from .drawing import (
     RED,
     Picture,
     Style,
-    drawing,
-    finish,
     hollow,
     light_grid,
+    picture,
     shown,
 )
 from .motion import shown_in
@@ -96,8 +95,8 @@ def jump_picture(
         f"joint {label}: {_named(found, unit)}"
         for label, found, unit in zip(joints, own, own_units, strict=True)
     )
-    with drawing():
-        figure = Picture(title, description, 9.9, _height(joints, 3.0))
+    key = "○ before a jump   ● after it   vertical lines: way-points   bars: after less before"
+    with picture(title, description, 9.9, _height(joints, 3.0), key) as figure:
         grid, pairs = _pairs(figure, joints, "time, s", 2.2)
         alike = len(set(own_units)) == 1
         for j, (upper, lower) in enumerate(pairs):
@@ -109,8 +108,6 @@ def jump_picture(
                 upper.set_ylabel(f"velocity, {written}")
                 lower.set_ylabel(f"jump, {written}")
         figure.align_ylabels(grid[:, 0])
-        key = "○ before a jump   ● after it   vertical lines: way-points   bars: after less before"
-        finish(figure, key)
     return figure
 
 
@@ -181,8 +178,11 @@ def polygon_picture(
         f"joint {label}: {_words(found, computed[:, j])}"
         for j, (label, found) in enumerate(zip(joints, own, strict=True))
     )
-    with drawing():
-        figure = Picture(title, description, 9.9, _height(joints, 3.2))
+    key = (
+        "— curve   ○ way-point   + control vertex, computed   □ control vertex, printed   "
+        "bars below: what rounding explains"
+    )
+    with picture(title, description, 9.9, _height(joints, 3.2), key) as figure:
         grid, pairs = _pairs(figure, joints, "parameter: way-point number + e", 2.6)
         curve = StretchedUniformBSpline(len(w))
         motion = fit(curve, w, np.ones(curve.segments))
@@ -198,11 +198,6 @@ def polygon_picture(
             upper.set_ylabel(f"{quantity}, as printed")
             lower.set_ylabel(f"printed − comp.\n10{raised}")
         figure.align_ylabels(grid[:, 0])
-        key = (
-            "— curve   ○ way-point   + control vertex, computed   □ control vertex, printed   "
-            "bars below: what rounding explains"
-        )
-        finish(figure, key)
     return figure
 
 
@@ -330,8 +325,9 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
         f"{scatter.lower:g}). Exactly: {exactly}. With an orbit for each coordinate "
         f"exact and double coordinates agree within {scatter.difference:.1g} {unit}."
     )
-    with drawing():
-        figure = Picture(title, description, 9.9, 3.15)
+    key = f"● exact   ◆ double precision   ·   β = {float(scatter.beta):g}, seed 0"
+    key += f"   ·   one orbit from {scatter.start}: in doubles {rest}"
+    with picture(title, description, 9.9, 3.15, key) as figure:
         apart, left, middle, right = figure.subplots(1, 4)
         _scatter(apart, scatter.apart_exact, scatter, unit, "orbit per coordinate")
         _scatter(apart, scatter.apart_doubles, scatter, unit, "orbit per coordinate", doubles=True)
@@ -347,8 +343,6 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
                 bbox={"boxstyle": "round,pad=0.15", "facecolor": PAPER, "linewidth": 0},
             )  # fmt: skip
         _steps(right, scatter)
-        key = f"● exact   ◆ double precision   ·   β = {float(scatter.beta):g}, seed 0"
-        finish(figure, f"{key}   ·   one orbit from {scatter.start}: in doubles {rest}")
     return figure
 
 

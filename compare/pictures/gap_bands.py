@@ -24,19 +24,14 @@ from .drawing import (
     Line,
     Picture,
     Style,
-    drawing,
-    finish,
     gap_scale,
+    legend,
     light_grid,
     name_rows,
+    picture,
     series,
     shown,
 )
-
-_LINEAR = 1e-4
-"""Gaps up to this many percent stand on a linear scale: a millionth, a solver's accuracy."""
-_LARGEST = 100.0
-"""Percent up to which gaps are drawn: first positions may be many times the optimum."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +83,7 @@ def gap_picture(
         raise TrajgapError("gap bands: no runs to draw")
     description = "; ".join(one.described for one in optimisers)
     rows = -(-(len(optimisers) + 2) // 3)
-    with drawing():
-        figure = Picture(title, description, 9.6, 4.2 + 0.22 * rows)
+    with picture(title, description, 9.6, 4.2 + 0.22 * rows) as figure:
         bands, shares = figure.subplots(1, 2, width_ratios=(1.25, 1))
         for k, one in enumerate(optimisers):
             colour, line = series(k)
@@ -107,7 +101,6 @@ def gap_picture(
             axes.set_xlabel("evaluations")
             light_grid(axes)
         figure.legend(loc="outside lower left", ncols=3, handlelength=3.0)
-        finish(figure)
     return figure
 
 
@@ -136,11 +129,17 @@ def _share_line(axes: Axes, x: Array, shares: Array, end: float, colour: str, li
     axes.set_ylim(0, 103)
 
 
-def _gap_axis(axes: Axes, optimisers: Sequence[Anytime], uncertainty: float | None) -> None:
+def _gap_axis(
+    axes: Axes, optimisers: Sequence[Anytime], uncertainty: float | None, linear: float = 1e-4
+) -> None:
+    """Scale gaps up to 100 %: those of first positions may be many times as large.
+
+    `linear`: percent up to which the scale is linear, a millionth: a solver's accuracy.
+    """
     ends = np.concatenate([100 * one.gaps.ravel() for one in optimisers])
     good = ends[np.isfinite(ends)]
     low = min(0.0, float(good.min())) if good.size else 0.0
-    high = min(_LARGEST, float(good.max())) if good.size else 1.0
+    high = min(100.0, float(good.max())) if good.size else 1.0
     known = "optimum" if uncertainty is not None else "best known, no lower bound proved"
     axes.axhline(0.0, color=INK, linewidth=1.3, label=known)
     if uncertainty:
@@ -148,9 +147,9 @@ def _gap_axis(axes: Axes, optimisers: Sequence[Anytime], uncertainty: float | No
         label = f"interval of the optimum: {two_digits(width)} %"
         axes.axhspan(-width, 0.0, facecolor=GRID, linewidth=0, zorder=0, label=label)
         low = min(low, -width)
-    axes.set_yscale("symlog", linthresh=_LINEAR, linscale=0.4)
-    gap_scale(axes.yaxis, 1.01 * max(high, _LINEAR), _LINEAR, low)
-    axes.set_ylim(min(1.6 * low, -0.4 * _LINEAR), 1.3 * max(high, _LINEAR))
+    axes.set_yscale("symlog", linthresh=linear, linscale=0.4)
+    gap_scale(axes.yaxis, 1.01 * max(high, linear), linear, low)
+    axes.set_ylim(min(1.6 * low, -0.4 * linear), 1.3 * max(high, linear))
     axes.set_ylabel("gap of best so far, %")
     axes.set_title("median and quartiles over the runs")
 
@@ -166,22 +165,20 @@ def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) 
         "1 % of the optimum"
         for label, (ratios, shares) in profiles.items()
     )
-    edge = _LINEAR / 10  # what is smaller is drawn here
-    with drawing():
-        figure = Picture(title, description, 9.6, 3.4 + 0.22 * -(-len(profiles) // 3))
+    edge, most = 1e-5, 100.0  # percent; what is smaller is drawn at the edge
+    with picture(title, description, 9.6, 3.4 + 0.22 * -(-len(profiles) // 3)) as figure:
         axes = figure.subplots()
         for k, (label, (ratios, shares)) in enumerate(profiles.items()):
             x = np.concatenate([[edge], np.maximum(100 * (ratios - 1), edge)])
-            _share_line(axes, x, np.concatenate([[0.0], shares]), _LARGEST, *series(k))
+            _share_line(axes, x, np.concatenate([[0.0], shares]), most, *series(k))
             axes.lines[-1].set_label(shown(label, 34))
         axes.set_xscale("log")
-        gap_scale(axes.xaxis, _LARGEST, _LINEAR)
-        axes.set_xlim(edge, _LARGEST)
+        gap_scale(axes.xaxis, most, 10 * edge)
+        axes.set_xlim(edge, most)
         axes.set_xlabel("gap at the end of the run, %; smaller ones at the left edge")
         axes.set_ylabel("runs within it, %")
         light_grid(axes)
         figure.legend(loc="outside lower left", ncols=3, handlelength=3.0)
-        finish(figure)
     return figure
 
 
@@ -210,13 +207,11 @@ def leaderboard_picture(
         for panel in panels
         for label, shares in panel.marked.items()
     )  # fmt: skip
-    with drawing():
-        figure = Picture(title, description, 9.6, 5.0)
+    with picture(title, description, 9.6, 5.0) as figure:
         grid = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
         for axes, panel in zip(grid, panels, strict=True):
             _board(axes, panel, np.asarray(gaps))
         grid[0].set_ylabel("runs that come so near, %")
-        finish(figure)
     return figure
 
 
@@ -275,8 +270,7 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
         f"{s.name}: {s.total()}, {s.note if isinstance(s.time, Why) else _WORDS[s.evidence]}"
         for s in steps
     )
-    with drawing():
-        figure = Picture(title, description, width, 1.1 + 0.5 * max(1, len(steps)))
+    with picture(title, description, width, 1.1 + 0.5 * max(1, len(steps))) as figure:
         axes = figure.subplots()
         for row, step in enumerate(steps):
             _bar(axes, row, step, top, narrow)
@@ -296,11 +290,9 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
         present = [
             e for e in Evidence if any(s.evidence is e and value_or_none(s.time) for s in steps)
         ]
-        axes.legend(
-            [Patch(linewidth=0.9, **_FILLS[e]) for e in present], [_WORDS[e] for e in present],
-            loc="upper left", bbox_to_anchor=(0.0, 0.0), ncols=3, handlelength=2.4,
-        )  # fmt: skip
-        finish(figure)
+        signs = {_WORDS[e]: Patch(linewidth=0.9, **_FILLS[e]) for e in present}
+        place: Style = {"loc": "upper left", "bbox_to_anchor": (0.0, 0.0)}
+        legend(axes, signs, ncols=3, handlelength=2.4, **place)
     return figure
 
 
@@ -358,8 +350,7 @@ def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
     description = "; ".join(f"{one.label}: {one.said}" for one in bars)
     # Twice the longest bar: room for its words.
     top = 2.0 * max([one.highest for one in bars], default=1.0)
-    with drawing():
-        figure = Picture(title, description, 9.6, 1.3 + 0.42 * max(1, len(bars)))
+    with picture(title, description, 9.6, 1.3 + 0.42 * max(1, len(bars))) as figure:
         axes = figure.subplots()
         axes.set_xscale("log")
         axes.axvline(1.0, color=INK, linewidth=1.3)
@@ -391,6 +382,5 @@ def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
             "printed total above it": Patch(facecolor=RED, edgecolor=RED),
             "the same, but rounding may explain it": Patch(facecolor=PAPER, edgecolor=RED),
         }
-        figure.legend(list(signs.values()), list(signs), loc="outside lower left", ncols=4)
-        finish(figure)
+        legend(figure, signs, ncols=4)
     return figure

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,7 +33,6 @@ from ...problem.motions import (
 from ..documents import si_unit
 from .drawing import INK, ORANGE, RED, Picture, shown
 from .panels import (
-    HUGE,
     POINTS,
     Line,
     Mark,
@@ -48,8 +47,10 @@ from .panels import (
     without,
 )
 
-_FEW = 60
-"""Samples or pieces of which each is marked: more would hide the curve."""
+
+def _few(times: Array) -> bool:
+    """Whether each sample or piece is marked: more would hide the curve."""
+    return times.size <= 60
 
 
 def motion_picture(
@@ -176,7 +177,7 @@ def checked_picture(
         of, times, points = "for all t", content.breaks, "○ point of the file"
     span = float(times[0]), float(times[-1])
     note = f"   ·   {of}: {found.verdict}"
-    signs = (points, "● nearest to a limit") if times.size <= _FEW else ("● nearest to a limit",)
+    signs = (points, "● nearest to a limit") if _few(times) else ("● nearest to a limit",)
     return panels_picture(rows, title, signs, note, span)
 
 
@@ -204,22 +205,17 @@ class _Row:
             ]
             for slack in (error, -error)
         )
-        few = motion.breaks.size <= _FEW
-        ends = np.append(trajectory.derivatives(0)[0, :, 0], trajectory.edges(0)[1][-1, 0])
         jumps = [
-            one.time
+            (one.time, one.time)
             for one in self.found.jumps
             if (one.joint, one.quantity) == (self.label, ORDERS[order]) and self._serious(order)
         ]
-        return self._line(
-            order,
-            (start + times, values),
-            broken=[*broken, *((time, time) for time in jumps)],
-            unsure=without(unsure, broken, self.found.total_time / POINTS),
-            points=(motion.breaks, ends) if few and order == 0 else None,
-            breaks=motion.breaks if few else None,
-            jumps=bool(jumps),
-        )
+        line = self._line(order, start + times, values, [*broken, *jumps], unsure)
+        if not _few(motion.breaks):
+            return replace(line, jumps=bool(jumps))
+        ends = np.append(trajectory.derivatives(0)[0, :, 0], trajectory.edges(0)[1][-1, 0])
+        points = line.points if order else (motion.breaks, ends)
+        return replace(line, jumps=bool(jumps), points=points, breaks=motion.breaks)
 
     def dots(self, samples: Samples, order: int) -> Line:
         """What samples prove of a derivative; nothing if they are too inexact for the limit."""
@@ -234,7 +230,7 @@ class _Row:
         if sizes and order:
             told &= errors <= max(sizes)
         times, values = times[told], values[told]
-        errors = np.nan_to_num(errors[told], nan=HUGE, posinf=HUGE)
+        errors = np.nan_to_num(errors[told], nan=np.finfo(np.float64).max)
         gap = (samples.time[-1] - samples.time[0]) / POINTS
         broken, unsure = (
             joined_stretches(
@@ -243,46 +239,26 @@ class _Row:
             )
             for slack in (errors, -errors)
         )
-        points = (samples.time, samples.position[:, self.joint])
-        return self._line(
-            order,
-            thinned(times, values),
-            broken=broken,
-            unsure=without(unsure, broken, self.found.total_time / POINTS),
-            points=points if samples.time.size <= _FEW and order == 0 else None,
-            dots=True,
-        )
+        line = replace(self._line(order, *thinned(times, values), broken, unsure), dots=True)
+        if order or not _few(samples.time):
+            return line
+        return replace(line, points=(samples.time, samples.position[:, self.joint]))
 
     def _line(
-        self,
-        order: int,
-        curve: tuple[Array, Array],
-        *,
-        broken: Stretches,
-        unsure: Stretches,
-        points: tuple[Array, Array] | None,
-        breaks: Array | None = None,
-        jumps: bool = False,
-        dots: bool = False,
+        self, order: int, times: Array, values: Array, broken: Stretches, unsure: Stretches
     ) -> Line:
-        none = np.empty(0)
-        unit = (self.unit + ("", "/s", "/s²", "/s³")[order], self.factor)
         braking = float(self.limits.deceleration[self.joint]) if order == 2 else np.inf
         return Line(
             joint=self.label,
             quantity=ORDERS[order],
             linear=is_linear(self.unit),
-            unit=unit,
-            times=curve[0],
-            values=curve[1],
+            unit=(self.unit + ("", "/s", "/s²", "/s³")[order], self.factor),
+            times=times,
+            values=values,
             limits=(*self._range(order), -braking, braking),
-            marks=self._marks(order, curve),
-            points=(none, none) if points is None else points,
-            breaks=none if breaks is None else breaks,
+            marks=self._marks(order, times, values),
             broken=broken,
-            unsure=unsure,
-            jumps=jumps,
-            dots=dots,
+            unsure=without(unsure, broken, self.found.total_time / POINTS),
         )
 
     def _range(self, order: int) -> tuple[float, float]:
@@ -295,11 +271,10 @@ class _Row:
         """What counts as kept: the range with its tolerance, and the limit of a deceleration."""
         low, high = self._range(order)
         tolerance = self.found.tolerance
-        spare = [tolerance * abs(x) if np.isfinite(x) else 0.0 for x in (low, high)]
-        if order == 0:
-            spare = [
-                tolerance * half_range(low, high, x) if np.isfinite(x) else 0.0 for x in (low, high)
-            ]
+        spare = [
+            tolerance * (abs(x) if order else half_range(low, high, x)) if np.isfinite(x) else 0.0
+            for x in (low, high)
+        ]
         braking = float(self.limits.deceleration[self.joint]) if order == 2 else np.inf
         return low - spare[0], high + spare[1], braking * (1 + tolerance)
 
@@ -307,7 +282,7 @@ class _Row:
         """Whether a jump is a fault: that of an acceleration only if jerk is limited."""
         return order < 2 or bool(np.isfinite(self._range(3)).any())
 
-    def _marks(self, order: int, curve: tuple[Array, Array]) -> list[Mark]:
+    def _marks(self, order: int, times: Array, values: Array) -> list[Mark]:
         """Where the derivative comes nearest to its limits, or its largest value without one."""
         names = (ORDERS[order], BRAKING) if order == 2 else (ORDERS[order],)
         peaks = [p for p in self.found.peaks if p.joint == self.label and p.quantity in names]
@@ -318,7 +293,6 @@ class _Row:
         for one in sorted(peaks, key=lambda p: -p.ratio):
             colour = RED if one.least_ratio > kept else ORANGE if one.most_ratio > kept else INK
             marks.append(Mark(one.time, one.value, one.limit, one.ratio, both, colour))
-        times, values = curve
         if not marks and times.size:
             k = int(np.nanargmax(np.abs(values)))
             marks.append(Mark(float(times[k]), float(values[k]), np.inf, 0.0, False))

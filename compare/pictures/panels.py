@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TypeAlias
@@ -11,12 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ...problem import TOLERANCE, Array, Trajectory, extrema
-from .drawing import BLUE, GRID, INK, ORANGE, RED, Picture, Style, drawing, finish, hollow, shown
+from .drawing import BLUE, GRID, INK, ORANGE, RED, Picture, Style, hollow, picture, shown
 
 POINTS = 480
 """Points of a curve of many segments, extrema apart: more than a panel has pixels."""
-HUGE = 1e300
-"""What stands for an error of which nothing is known: beyond every limit."""
 Stretches = Sequence[tuple[float, float]]
 """Starts and ends, s."""
 
@@ -76,67 +74,41 @@ def beyond(
     slack: Array | float | None = None,
     braking: float = np.inf,
 ) -> Stretches:
-    """Stretches of time in which a derivative lies beyond its limits, from exact crossings.
+    """Stretches of time in which a derivative lies beyond its limits, far finer than a pixel.
 
-    Start and end, s; stretches that touch are joined. If there are more pieces than pixels, pieces
-    shorter than a pixel count in whole, and shorter gaps are closed. `column, order`: joint and
-    derivative. `low, high`: limits in rad/sᵒʳᵈᵉʳ or m/sᵒʳᵈᵉʳ. `slack`: shape (pieces,), an excess
-    up to this does not count; by default the checker's relative tolerance. A negative one counts
-    what stays within the limits by less than its size. `braking`: limit of an acceleration while
-    the speed falls, where it has one of its own.
+    Start and end, s: where the line between two samples, among which are the exact extrema, crosses
+    a limit; stretches that touch are joined, and of more pieces than pixels those within a pixel.
+    `column, order`: joint and derivative. `low, high`: limits in rad/sᵒʳᵈᵉʳ or m/sᵒʳᵈᵉʳ. `slack`:
+    shape (pieces,), an excess up to this does not count; by default the checker's relative
+    tolerance. A negative one counts what stays within the limits by less than its size. `braking`:
+    limit of an acceleration while the speed falls, where it has one of its own.
     """
-    durations, total = trajectory.durations, trajectory.total_time
+    pieces, total = len(trajectory.durations), trajectory.total_time
     if slack is None:
         slack = TOLERANCE * max((abs(x) for x in (low, high) if np.isfinite(x)), default=0.0)
-    # Where nothing is known of an error, infinity less infinity would be no number.
-    slacks = np.broadcast_to(np.clip(slack, -HUGE, HUGE), durations.shape)
-    values = trajectory.turns(order)[1][:, :, column]
-    lowest, highest = np.nanmin(values, axis=0), np.nanmax(values, axis=0)
-    some = (lowest < max(low, -braking) - slacks) | (highest > min(high, braking) + slacks)
-    pixel = total / POINTS if len(durations) > POINTS else 0.0
-
-    def held(k: int, place: float) -> tuple[float, float]:
-        """The range on a piece, around a place between roots of the speed."""
-        if np.isinf(braking):
-            return low - slacks[k], high + slacks[k]
-        forth = trajectory.values(k, column, 1, np.array([place]))[0] >= 0
-        least, most = (-braking, high) if forth else (low, braking)
-        return least - slacks[k], most + slacks[k]
-
-    found: list[tuple[float, float]] = []
-    for k in np.nonzero(some)[0].tolist():
-        if durations[k] < pixel:
-            least, most = held(k, 0.5)
-            if lowest[k] < least or highest[k] > most:
-                found.append((float(trajectory.breaks[k]), float(trajectory.breaks[k + 1])))
-            continue
-        sides = np.array([low, -braking]) - slacks[k], np.array([high, braking]) + slacks[k]
-        levels = [
-            trajectory.level(k, column, order, x)
-            for x in np.unique(sides).tolist()
-            if np.isfinite(x)
-        ]
-        if np.isfinite(braking):
-            levels.append(trajectory.level(k, column, 1, 0.0))
-        for s0, s1 in pairwise([0.0, *sorted(_roots(levels)), 1.0]):
-            middle = (s0 + s1) / 2
-            least, most = held(k, middle)
-            value = float(trajectory.values(k, column, order, np.array([middle]))[0])
-            if s1 > s0 and not least <= value <= most:
-                t0, t1 = map(float, trajectory.times(k, np.array([s0, s1])))
-                found.append((t0, t1))
-    return joined_stretches(found, max(pixel, 1e-12 * total))
+    times, values = sampled(trajectory, column, order)
+    own = np.searchsorted(trajectory.breaks[1:-1], times, side="right")
+    # Of an error of which nothing is known, the largest number: infinity less itself is none.
+    slacks = np.broadcast_to(np.nan_to_num(slack), (pieces,))[own]
+    least, most = np.full(times.size, low), np.full(times.size, high)
+    if np.isfinite(braking):
+        forth = trajectory(times, 1)[:, column] >= 0
+        least, most = np.where(forth, -braking, low), np.where(forth, high, braking)
+    excess = np.maximum(values - most, least - values) - slacks
+    turns = np.flatnonzero(np.diff(np.concatenate([[False], excess > 0, [False]])))
+    found = [
+        (_crossing(times, excess, first, first - 1), _crossing(times, excess, after - 1, after))
+        for first, after in turns.reshape(-1, 2).tolist()
+    ]
+    return joined_stretches(found, total / POINTS if pieces > POINTS else 1e-12 * total)
 
 
-def _roots(polynomials: Sequence[Array]) -> Iterator[float]:
-    """Places in (0, 1) at which any of some polynomials vanishes."""
-    for one in polynomials:
-        # Leading coefficients that are lost in the digits of the others would divide them.
-        told = np.nonzero(np.abs(one) > 1e-16 * np.abs(one).max())[0]
-        powers = one[: told[-1] + 1] if told.size else one[:0]
-        for root in np.polynomial.polynomial.polyroots(powers) if powers.size else ():
-            if abs(root.imag) < 1e-9 and 0 < root.real < 1:
-                yield float(root.real)
+def _crossing(times: Array, excess: Array, beyond: int, within: int) -> float:
+    """Where the line from a sample beyond a limit to its neighbour crosses it."""
+    if not 0 <= within < times.size or not np.isfinite(excess[within]):
+        return float(times[beyond])
+    share = excess[beyond] / (excess[beyond] - excess[within])
+    return float(times[beyond] + share * (times[within] - times[beyond]))
 
 
 def joined_stretches(found: Stretches, gap: float) -> Stretches:
@@ -258,8 +230,13 @@ def panels_picture(
     many = len(rows[0])
     description = "; ".join(line.described for row in rows for line in row[1:])
     lines = [line for row in rows for line in row]
-    with drawing():
-        figure = Picture(title, description, 3.3 * many, 0.95 + 1.45 * len(rows))
+    key = "   ".join((*signs, "- - limit   red: beyond a limit"))
+    if any(line.jumps for line in lines):
+        key += ", or a jump"
+    if any(line.unsure for line in lines):
+        key += "   orange: perhaps beyond"
+    height = 0.95 + 1.45 * len(rows)
+    with picture(title, description, 3.3 * many, height, key + note) as figure:
         # Axes that share one scale ask all others at every turn: each has its own, of one range.
         grid = figure.subplots(len(rows), many, squeeze=False)
         free = 0.02 * (span[1] - span[0])  # markers at both ends are whole
@@ -270,12 +247,6 @@ def panels_picture(
                 axes.tick_params(axis="x", labelbottom=k == len(rows) - 1)
         for axes in grid[-1]:
             axes.set_xlabel("time, s")
-        key = "   ".join((*signs, "- - limit   red: beyond a limit"))
-        if any(line.jumps for line in lines):
-            key += ", or a jump"
-        if any(line.unsure for line in lines):
-            key += "   orange: perhaps beyond"
-        finish(figure, key + note)
     return figure
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
@@ -22,12 +23,12 @@ from .drawing import (
     RED,
     Picture,
     Style,
-    drawing,
-    finish,
     gap_scale,
     hollow,
+    legend,
     light_grid,
     name_rows,
+    picture,
     series,
     shown,
 )
@@ -35,10 +36,6 @@ from .gap_bands import quartile_band
 
 Runs = Sequence[Run] | Sequence[JointRuns]
 """Runs of one algorithm: of all joints, or of each joint separately."""
-_LINEAR = 0.01
-"""Gaps up to this many percent stand on a linear scale, larger ones on a logarithmic one."""
-_RUNS = 16
-"""Runs of an algorithm drawn one by one: more thin lines on top of each other show no more."""
 
 
 def convergence(
@@ -50,6 +47,7 @@ def convergence(
     rounding: float = 0.0,
     evidence: str = "best known",
     joints: Sequence[str] = (),
+    thin: int = 16,
 ) -> Picture:
     """Best-so-far of every seed, with median and quartiles, beside the optimum.
 
@@ -59,7 +57,8 @@ def convergence(
     joints. `printed`: printed totals by label, s; one per joint (nan where none) for searches of
     single joints. `rounding`: half the width of the interval that printed digits stand for, s;
     drawn as a band. `evidence`: word for the evidence of the optimum. `joints`: joint labels; "1",
-    "2", ... by default.
+    "2", ... by default. `thin`: runs of an algorithm that are drawn one by one; more thin lines on
+    top of each other show no more.
     """
     panels = _panels(runs)
     optima = np.atleast_1d(np.asarray(optimum, dtype=np.float64)).tolist()
@@ -82,14 +81,13 @@ def convergence(
         for i, panel in enumerate(panels)
         for name, one in panel.items()
     )
-    with drawing():
-        figure = Picture(title, description, 9.6, 1.2 + tall)
+    with picture(title, description, 9.6, 1.2 + tall) as figure:
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True)
         for axes in grid.ravel()[len(panels) :]:
             axes.set_visible(False)
         for i, (axes, panel) in enumerate(zip(grid.ravel(), panels, strict=False)):
             own = {name: value[i] for name, value in totals.items()}
-            _panel(axes, panel, optima[i], own, rounding)
+            _panel(axes, panel, optima[i], own, rounding, thin)
             name = f"joint {shown(labels[i], 14)}: " if len(panels) > 1 else ""
             axes.set_title(f"{name}{evidence} optimum {optima[i]:.6f} s", fontsize=8.5)
             if i + columns >= len(panels):
@@ -97,10 +95,9 @@ def convergence(
                 axes.set_xlabel("iteration")
         for row in grid:
             row[0].set_ylabel("gap of best so far, %")
-        handles, names = grid[0, 0].get_legend_handles_labels()
-        said = [_legend_words(name, runs, totals) for name in names]
-        figure.legend(handles, said, loc="outside lower left", ncols=1, handlelength=3.2)
-        finish(figure)
+        lines = zip(*grid[0, 0].get_legend_handles_labels(), strict=True)
+        signs = {_legend_words(name, runs, totals, thin): line for line, name in lines}
+        legend(figure, signs, ncols=1, handlelength=3.2)
     return figure
 
 
@@ -136,17 +133,20 @@ def _panel(
     optimum: float,
     printed: Mapping[str, float],
     rounding: float,
+    thin: int,
+    linear: float = 0.01,
 ) -> None:
+    """Draw runs, printed totals and optimum; `linear`: percent up to which the scale is linear."""
     low, high = 0.0, 0.0
     for at, (name, traces) in enumerate(panel.items()):
         colour, line = series(at)
         gaps = 100 * (traces / optimum - 1)
         iterations = np.arange(gaps.shape[1], dtype=np.float64)
         chosen = np.arange(len(gaps))
-        if len(gaps) > _RUNS:  # of many runs some, by rank from the best end to the worst
-            ranks = np.linspace(0, len(gaps) - 1, _RUNS).round().astype(np.intp)
+        if len(gaps) > thin:  # of many runs some, by rank from the best end to the worst
+            ranks = np.linspace(0, len(gaps) - 1, thin).round().astype(np.intp)
             chosen = np.argsort(gaps[:, -1], kind="stable")[ranks]
-        curves = [_stairs(iterations, g) for g in gaps[chosen]]
+        curves = [_stairs(iterations, g, linear) for g in gaps[chosen]]
         axes.add_collection(LineCollection(curves, colors=colour, linewidths=0.5, alpha=0.28))
         # Quantiles that are runs: a run without answer is infinite and can't be averaged.
         bands = np.quantile(gaps, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
@@ -164,15 +164,15 @@ def _panel(
             axes.axhspan(gap - half, gap + half, facecolor=RED, alpha=0.1, linewidth=0)
             low, high = min(low, gap - half), max(high, gap + half)
     axes.axhline(0.0, color=INK, linewidth=1.3, label="optimum")
-    axes.set_yscale("symlog", linthresh=_LINEAR, linscale=0.5)
-    top = 2.0 * max(high, _LINEAR)
-    gap_scale(axes.yaxis, top, _LINEAR, low)
-    axes.set_ylim(min(1.6 * low, -0.5 * _LINEAR), top)
+    axes.set_yscale("symlog", linthresh=linear, linscale=0.5)
+    top = 2.0 * max(high, linear)
+    gap_scale(axes.yaxis, top, linear, low)
+    axes.set_ylim(min(1.6 * low, -0.5 * linear), top)
     axes.set_xlim(0, max(t.shape[1] - 1 for t in panel.values()))
     light_grid(axes, "y")
 
 
-def _stairs(iterations: Array, values: Array) -> Array:
+def _stairs(iterations: Array, values: Array, linear: float) -> Array:
     """Corners of a best-so-far curve, nothing before the first feasible answer.
 
     Steps of less than a fiftieth of the gap are joined: on the logarithmic axis they are thinner
@@ -185,19 +185,19 @@ def _stairs(iterations: Array, values: Array) -> Array:
     corners = [(x[0], y[0])]
     for i in range(1, x.size):
         level = corners[-1][1]
-        if level - y[i] > max(abs(level), _LINEAR) / 50:
+        if level - y[i] > max(abs(level), linear) / 50:
             corners += [(x[i], level), (x[i], y[i])]
     corners += [(x[-1], corners[-1][1]), (x[-1], y[-1])]
     return np.array(corners)
 
 
 def _legend_words(
-    name: str, runs: Mapping[str, Runs], totals: Mapping[str, Sequence[float]]
+    name: str, runs: Mapping[str, Runs], totals: Mapping[str, Sequence[float]], thin: int
 ) -> str:
     """What the legend says of a line that has the name of an algorithm or of a printed total."""
     if name in runs:
         many = len(runs[name])
-        each = "each" if many <= _RUNS else f"{_RUNS} of them, best and worst included,"
+        each = "each" if many <= thin else f"{thin} of them, best and worst included,"
         return f"{many} runs of {shown(name, 64)}: median, quartiles (band), {each} (thin)"
     label = name.removeprefix("printed: ")
     if label not in totals:
@@ -226,8 +226,7 @@ def endings(
         [f"{name}: {_range(one)}" for name, one in ends.items()]
         + [f"{label}: {value:.6g} s" for label, value, _ in lines]
     )
-    with drawing():
-        figure = Picture(title, description, 9.6, 1.1 + 0.55 * len(ends) + 0.24 * len(lines))
+    with picture(title, description, 9.6, 1.1 + 0.55 * len(ends) + 0.24 * len(lines)) as figure:
         axes = figure.subplots()
         for row, one in enumerate(ends.values()):
             colour, good = series(row)[0], one[np.isfinite(one)]
@@ -253,7 +252,6 @@ def endings(
             axes.set_xlim(float(every.min()) - 0.04 * width, float(every.max()) + 0.42 * width)
         axes.set_xlabel("total time, s")
         light_grid(axes, "x")
-        finish(figure)
     return figure
 
 
@@ -304,8 +302,8 @@ def _range(ends: Array) -> str:
 
 _MARKERS = "os^D"
 """Of the step lengths, in their order."""
-_SHOWN_OBJECTIVES = 2
-"""Objectives that are drawn: filled and hollow tell two apart."""
+_FILLED = {"filled": INK, "hollow": PAPER}
+"""What tells objectives apart: no more of them are drawn."""
 
 
 def instances_picture(result: InstancesResult, *, title: str) -> Picture:
@@ -322,8 +320,8 @@ def instances_picture(result: InstancesResult, *, title: str) -> Picture:
     ]
     if result.printed is not None:
         described.append(f"printed: {percent_range(*result.printed)}")
-    with drawing():
-        figure = Picture(title, "; ".join(described) + ".", 9.6, 1.9 + 0.62 * len(result.readings))
+    height = 1.9 + 0.62 * len(result.readings)
+    with picture(title, "; ".join(described) + ".", 9.6, height) as figure:
         panels = figure.subplots(1, 3, sharey=True, width_ratios=(1.25, 1.25, 1.0))
         for axes, effect in zip(panels, Effect, strict=True):
             _effect_panel(axes, result, effect)
@@ -337,14 +335,13 @@ def instances_picture(result: InstancesResult, *, title: str) -> Picture:
             beside = f"\n{missing} pairs without answer" if missing else ""
             names.append(shown(result.label(reading), 24, 3) + beside)
         name_rows(panels[0], names, 0.6)
-        figure.legend(*_legend(result), loc="outside lower left", ncols=4)
-        finish(figure)
+        legend(figure, _signs(result), ncols=4)
     return figure
 
 
 def _objectives(result: InstancesResult, effect: Effect) -> tuple[int, ...]:
     """Objectives that a panel tells apart; the optima have none."""
-    many = min(_SHOWN_OBJECTIVES, len(result.block.objectives))
+    many = min(len(_FILLED), len(result.block.objectives))
     return (0,) if effect is Effect.CURVE else tuple(range(many))
 
 
@@ -377,16 +374,15 @@ def _effect_panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:
     light_grid(axes, "x")
 
 
-def _legend(result: InstancesResult) -> tuple[list[Line2D | Patch], list[str]]:
-    found: dict[str, Line2D | Patch] = {}
+def _signs(result: InstancesResult) -> dict[str, Artist]:
+    found: dict[str, Artist] = {}
     for which, step in enumerate(result.block.lengths):
         colour, marker = series(which)[0], _MARKERS[which % len(_MARKERS)]
         dot = Line2D([], [], color=colour, marker=marker, markersize=4, linestyle="none")
         found[f"steps of {step:g} {result.block.unit}"] = dot
-    for at, objective in enumerate(result.block.objectives[:_SHOWN_OBJECTIVES]):
-        word, fill = ("filled", INK) if at == 0 else ("hollow", PAPER)
+    for (word, fill), objective in zip(_FILLED.items(), result.block.objectives, strict=False):
         found[f"{word}: {objective}"] = Line2D([], [], **hollow(4, face=fill))
     found["median"] = Line2D([], [], color=INK, linewidth=2.2)
     if result.printed is not None:
         found["printed"] = Patch(facecolor=RED, alpha=0.5)
-    return list(found.values()), list(found)
+    return found

@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...nlp import Solution
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
-from .drawing import INK, MUTED, ORANGE, PURPLE, RED, SKY, Picture, Style, drawing, finish, shown
+from .drawing import INK, MUTED, ORANGE, PURPLE, RED, SKY, Picture, Style, picture, shown
 
-LEVELS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-"""Contours in percent above the reference total."""
 _CORNERS: Array = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(3) / 2]])
 """Of the triangle of shares, each where one duration is all of the total."""
 # On the map, whose colours do not follow the page's theme, neither may these; none of them is a
@@ -33,6 +31,7 @@ def landscape(
     ends: Mapping[str, ArrayLike],
     *,
     title: str,
+    levels: Sequence[float] = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0),
 ) -> Picture:
     """Least total over the shares of three durations: all shares, and the part that matters.
 
@@ -42,7 +41,7 @@ def landscape(
     Where a bound on the durations or a position limit forbids the tight total, the map is hatched.
     `problem`: with three segments. `optimum`: reference of the contours. `printed`: label and
     printed durations, shape (3,), s. `ends`: durations that each heuristic ended with, shape (runs,
-    3), s.
+    3), s. `levels`: of the contours, percent above the reference total.
     """
     if problem.segments != 3:
         raise TrajgapError(f"landscape: drawn for 3 segments, the problem has {problem.segments}")
@@ -64,20 +63,19 @@ def landscape(
         far = f"{100 * (total / best - 1):+.3g} % after free rescaling"
         parts.append(f"{label}: {'no rescaling keeps the limits' if np.isinf(total) else far}")
     parts += [f"{name}: {len(s)} end points" for name, s in runs.items()]
-    with drawing():
-        figure = Picture(title, "; ".join(parts), 9.6, 5.0)
+    with picture(title, "; ".join(parts), 9.6, 5.0) as figure:
         whole, part = figure.subplots(1, 2)
-        colours = matplotlib.colormaps["cividis_r"](np.linspace(0, 1, len(LEVELS)))
+        colours = matplotlib.colormaps["cividis_r"](np.linspace(0, 1, len(levels)))
         window, below = _window(every), False
         for axes, corner in ((whole, np.zeros(3)), (part, window)):
-            below |= _map(axes, problem, corner, best, colours)
+            below |= _map(axes, problem, corner, best, levels, colours)
             _mark(axes, corner, centre, points, runs)
         inner = window + (1 - window.sum()) * np.eye(3)
         edge = Polygon(inner @ _CORNERS, fill=False, edgecolor=_DARK, linewidth=1.1, zorder=4)
         whole.add_patch(edge)
         whole.set_title("all shares of the total", loc="center", pad=2)
         part.set_title("enlarged", loc="center", pad=2)
-        _key(figure, colours, best)
+        _key(figure, levels, colours, best)
         note = "Each point: durations of these shares, stretched until a limit is reached (tight "
         note += "total)."
         note += f" Hatched: {_forbids(problem)} forbids it." if _forbids(problem) else ""
@@ -87,7 +85,6 @@ def landscape(
             handles, labels, loc="outside lower left", ncols=2, title=note,
             title_fontsize=8, alignment="left",
         )  # fmt: skip
-        finish(figure)
     return figure
 
 
@@ -137,7 +134,14 @@ def _place(corner: Array, shares: Array) -> Array:
     return np.asarray(((shares - corner) / (1 - corner.sum())) @ _CORNERS)
 
 
-def _map(axes: Axes, problem: Problem, corner: Array, best: float, colours: Array) -> bool:
+def _map(
+    axes: Axes,
+    problem: Problem,
+    corner: Array,
+    best: float,
+    levels: Sequence[float],
+    colours: Array,
+) -> bool:
     """Draw the contours; whether some point lies below the optimum."""
     shares, triangles = _grid(corner)
     total = tight_total(problem, shares)
@@ -145,7 +149,7 @@ def _map(axes: Axes, problem: Problem, corner: Array, best: float, colours: Arra
     mesh = Triangulation(x, y, triangles)
     top = 10 * best
     excess = 100 * (np.minimum(total, top) / best - 1)
-    bands = axes.tricontourf(mesh, excess, levels=[-101.0, *LEVELS[1:], 1e9], colors=list(colours))
+    bands = axes.tricontourf(mesh, excess, levels=[-101.0, *levels[1:], 1e9], colors=list(colours))
     bands.set_edgecolor(_DARK)
     bands.set_linewidth(0.4)
     # What lies 0.01 % below the optimum is drawn apart: it needs an explanation.
@@ -229,13 +233,13 @@ def _forbids(problem: Problem) -> str:
     return " or ".join(words + ["a position limit"] * problem.limits.limits_position)
 
 
-def _key(figure: Picture, colours: Array, best: float) -> None:
-    edges = list(range(len(LEVELS) + 1))
+def _key(figure: Picture, levels: Sequence[float], colours: Array, best: float) -> None:
+    edges = list(range(len(levels) + 1))
     mapping = matplotlib.cm.ScalarMappable(
-        BoundaryNorm(edges, len(LEVELS)), ListedColormap(colours)
+        BoundaryNorm(edges, len(levels)), ListedColormap(colours)
     )
     bar = figure.colorbar(mapping, ax=figure.axes, shrink=0.75, aspect=24, pad=0.02)
-    bar.set_ticks(edges[:-1], labels=[f"+{v:g} %" if v else f"{best:.4f} s" for v in LEVELS])
+    bar.set_ticks(edges[:-1], labels=[f"+{v:g} %" if v else f"{best:.4f} s" for v in levels])
     bar.ax.tick_params(length=0)
     bar.outline.set_edgecolor(INK)
     bar.set_label("tight total, above the optimum")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import cos, pi, sin
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
@@ -15,7 +16,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...problem import Array, TrajgapError
 from ...problem.robots import Workspace
-from .drawing import BLUE, INK, PAPER, RED, SKY, Picture, Style, drawing, finish, light_grid, shown
+from .drawing import (
+    BLUE,
+    INK,
+    PAPER,
+    RED,
+    SKY,
+    Picture,
+    Style,
+    drawing,
+    legend,
+    light_grid,
+    picture,
+    shown,
+)
 
 _AXES = "xyz"
 """Names of the axes of the base."""
@@ -50,8 +64,8 @@ def workspace_picture(
     corners = np.vstack([workspace.lower, workspace.upper, path, np.zeros((1, 3))])
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, half = (low + high) / 2, 1.1 * float((high - low).max() / 2 or 1.0)
-    with drawing():
-        figure = Picture(title or f"Workspace of {name}", f"{description}.", 9.9, 4.15)
+    title, note = title or f"Workspace of {name}", shown(numbers, 150, 2)
+    with picture(title, f"{description}.", 9.9, 4.15, note, line=34) as figure:
         sides = ((0, 1, "from above"), (0, 2, "from the side"), (1, 2, "from the front"))
         views = list(zip(figure.subplots(1, 3), sides, strict=True))
         for axes, (across, up, view) in views:
@@ -60,9 +74,9 @@ def workspace_picture(
             axes.set_xlim(middle[across] - half, middle[across] + half)
             axes.set_ylim(middle[up] - half, middle[up] + half)
             axes.set_title(f"{view} ({_AXES[across]}, {_AXES[up]})")
-        handles, names = _legend(bool(len(path)), bool(far_off.any()))
-        figure.legend(handles, names, loc="outside upper right", ncols=len(names))
-        finish(figure, shown(numbers, 150, 2), width=34)
+        signs = _signs(bool(len(path)), bool(far_off.any()))
+        legend(figure, signs, loc="outside upper right", ncols=len(signs))
+    with drawing():
         for axes, (across, up, _) in views:
             if labels:
                 place_labels(axes, path[:, [across, up]], [shown(x, 16) for x in labels])
@@ -132,9 +146,9 @@ def _view(
     light_grid(axes)
 
 
-def _legend(with_path: bool, with_missed: bool) -> tuple[list[Line2D], list[str]]:
+def _signs(with_path: bool, with_missed: bool) -> dict[str, Artist]:
     cross: Style = {"linestyle": "none", "markersize": 9}
-    found = {
+    found: dict[str, Artist] = {
         "sampled positions": Line2D([], [], color=SKY, marker="o", linestyle="none", markersize=3),
         "their box": Line2D([], [], color=BLUE, linewidth=0.9),
         "base": Line2D([], [], color=INK, marker="+", **cross),
@@ -144,7 +158,7 @@ def _legend(with_path: bool, with_missed: bool) -> tuple[list[Line2D], list[str]
         found["way-points, in order"] = path
     if with_missed:
         found["out of reach"] = Line2D([], [], color=RED, marker="X", **cross | {"markersize": 6.5})
-    return list(found.values()), list(found)
+    return found
 
 
 def place_labels(axes: Axes, points: Array, labels: Sequence[str]) -> None:

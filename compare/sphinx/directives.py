@@ -1,12 +1,12 @@
-"""Directives, each a part of an audit, of the suite or of the leaderboard as blocks."""
+"""Directives, each a function that makes a part of an audit, the suite or the leaderboard."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from inspect import signature
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
@@ -40,7 +40,6 @@ from ..documents import (
     OWN_OPTIMA,
     AuditedCase,
     ClaimVerdict,
-    Provenance,
     ReadingOutcome,
     Why,
     by_search,
@@ -50,30 +49,27 @@ from ..documents import (
     value_or_none,
     worth,
 )
-from ..gaps import SIZES, Board, curve_of, size_of
+from ..gaps import SIZES, curve_of, size_of
 from ..pictures import pictured, reached_picture, waterfall_picture
 from .docutils_nodes import nodes_of
 from .leaderboard import HANDLINGS, board_of, board_parts, boards_drawn, said
-from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn
-from .results import PROVED_WITHIN, Results, instances_of, proof_said, proved_again
-
-_NONE = "–"
-"""A cell without a value."""
+from .papers import COLUMNS, NONE, paper_rows, papers_drawn
+from .results import Results, instances_of, proof_said, proved_again
 
 
-class FromBlocks(SphinxDirective, ABC):
-    """A directive that shows blocks; what is wrong is one error of the build with its place."""
+class Shown(SphinxDirective):
+    """A directive that shows what a function makes, whose parameters are argument and options."""
+
+    made: ClassVar[Callable[..., Iterable[Block | nodes.Node]]]
 
     def run(self) -> list[nodes.Node]:
-        """The nodes, or an error of the build."""
+        """The nodes, or an error of the build with its place."""
         try:
-            return nodes_of(self.made())
+            made = list(type(self).made(self, *self.arguments, **self.options))
         except TrajgapError as error:
             raise self.error(str(error)) from None
-
-    @abstractmethod
-    def made(self) -> Iterable[Block]:
-        """What the directive puts into the page."""
+        each = ([one] if isinstance(one, nodes.Node) else nodes_of([one]) for one in made)
+        return [node for one in each for node in one]
 
     def place(self, folder: str, name: str = "") -> Path:
         """A file beside conf.py, which the page depends on if it is named."""
@@ -87,43 +83,43 @@ class FromBlocks(SphinxDirective, ABC):
         """The folder that conf.py names."""
         return Results(self.place(self.config.trajgap_results))
 
-
-class FromCase(FromBlocks):
-    """A directive that shows a part of one audit."""
-
-    required_arguments = 1
-
-    def made(self) -> Iterable[Block]:
-        """What the directive puts into the page."""
-        name = self.arguments[0]
+    def audited(self, name: str) -> AuditedCase:
+        """An audit, on which the page depends."""
         self.place(self.config.trajgap_results, f"{name}.json")
-        return self.part_of(self.results.audited(name))
-
-    @abstractmethod
-    def part_of(self, case: AuditedCase) -> Iterable[Block]:
-        """What the directive shows of an audit."""
+        return self.results.audited(name)
 
 
-class Card(FromCase):
+def _directive(made: Callable[..., Iterable[Block | nodes.Node]]) -> type[SphinxDirective]:
+    """The directive of a function: what has no default is an argument, all else an option."""
+    readers = {"str": directives.unchanged, "int": directives.positive_int, "bool": _flag}
+    _, *taken = signature(made).parameters.values()
+    own = {
+        "made": made,
+        "required_arguments": sum(one.default is one.empty for one in taken),
+        "option_spec": {
+            one.name: readers[one.annotation] for one in taken if one.default is not one.empty
+        },
+    }
+    return type(made.__name__, (Shown,), own)
+
+
+def _flag(given: str | None) -> bool:
+    return directives.flag(given) is None
+
+
+def card(page: Shown, name: str) -> list[Block]:
     """``{trajgap-card} CASE``: the paper, and the verdict in at most 80 words."""
-
-    def part_of(self, case: AuditedCase) -> list[Block]:
-        """One paragraph a sentence; errors marked."""
-        return [reference(case.source), card_shown(case.card)]
+    case = page.audited(name)
+    return [reference(case.source), card_shown(case.card)]
 
 
-class Claims(FromCase):
-    """``{trajgap-claims} CASE``: every claim with its place, digits, word and reason."""
-
-    option_spec: ClassVar[dict[str, Any]] = {"verdict": directives.unchanged}
-
-    def part_of(self, case: AuditedCase) -> list[Block]:
-        """The claims with one of the words asked for, in their order; all without the option."""
-        wanted = wanted_words(self.options.get("verdict", ""))
-        chosen = [one for one in case.verdicts if not wanted or one.verdict in wanted]
-        if wanted:
-            chosen.sort(key=lambda one: wanted.index(one.verdict))
-        return [*claims_shown(case, chosen, _explained(case))] or [Prose(none_said(wanted))]
+def claims(page: Shown, name: str, verdict: str = "") -> list[Block]:
+    """``{trajgap-claims} CASE``: claims with place, digits, word and reason, some words or all."""
+    case, wanted = page.audited(name), wanted_words(verdict)
+    chosen = [one for one in case.verdicts if not wanted or one.verdict in wanted]
+    if wanted:
+        chosen.sort(key=lambda one: wanted.index(one.verdict))
+    return [*claims_shown(case, chosen, _explained(case))] or [Prose(none_said(wanted))]
 
 
 def wanted_words(option: str) -> list[str]:
@@ -158,12 +154,9 @@ def _explained(case: AuditedCase) -> dict[str, list[str]]:
     return found
 
 
-class Readings(FromCase):
+def readings(page: Shown, name: str) -> list[Block]:
     """``{trajgap-readings} CASE``: what the text leaves open, the default, and what follows."""
-
-    def part_of(self, case: AuditedCase) -> list[Block]:
-        """The default with its reason, and a row for each reading and printed motion."""
-        return readings_of(case)
+    return readings_of(page.audited(name))
 
 
 def readings_of(case: AuditedCase) -> list[Block]:
@@ -214,209 +207,171 @@ def _under(
     keeping = value_or_none(outcome.keeping)
     return (
         labels[outcome.reading],
-        own[0] if own else _NONE,
-        _NONE if keeping is None else KEPT[keeping],
-        _NONE if held is None else f"{held.everywhere:.4g}",
-        _NONE if optimum is None else f"{optimum:.5g}",
+        own[0] if own else NONE,
+        NONE if keeping is None else KEPT[keeping],
+        NONE if held is None else f"{held.everywhere:.4g}",
+        NONE if optimum is None else f"{optimum:.5g}",
         "" if optimum is None else outcome.evidence,
     )
 
 
-class WaterfallShown(FromCase):
+def waterfall(page: Shown, name: str, problem: str = "", reading: str = "") -> list[Block]:
     """``{trajgap-waterfall} CASE``: where the time goes, as a picture and step by step."""
-
-    option_spec: ClassVar[dict[str, Any]] = dict.fromkeys(
-        ("problem", "reading"), directives.unchanged
-    )
-
-    def part_of(self, case: AuditedCase) -> list[Block]:
-        """The first waterfall that fits the options."""
-        name = self.arguments[0]
-        asked = {key: self.options[key] for key in ("problem", "reading") if key in self.options}
-        for found in case.waterfalls:
-            if all(getattr(found, key) == value for key, value in asked.items()):
-                picture = waterfall_picture(found, title=case.title)
-                said = [f"{s.name}: {s.note}." for s in found.steps if s.name in OPTIMA_STEPS]
-                return [
-                    pictured(picture, "waterfall", name, found.problem, found.reading),
-                    *(Prose(capital(one), "note") for one in (*said, *found.without_optimum)),
-                    Folded("Step by step", (steps_table(found),)),
-                ]
-        raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; see the JSON")
+    case = page.audited(name)
+    for found in case.waterfalls:
+        if problem in ("", found.problem) and reading in ("", found.reading):
+            picture = waterfall_picture(found, title=case.title)
+            notes = [f"{s.name}: {s.note}." for s in found.steps if s.name in OPTIMA_STEPS]
+            return [
+                pictured(picture, "waterfall", name, found.problem, found.reading),
+                *(Prose(capital(one), "note") for one in (*notes, *found.without_optimum)),
+                Folded("Step by step", (steps_table(found),)),
+            ]
+    asked = {key: value for key, value in (("problem", problem), ("reading", reading)) if value}
+    raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; see the JSON")
 
 
-class ReachedShown(FromCase):
+def reached(page: Shown, name: str) -> list[Block]:
     """``{trajgap-reached} CASE``: how near the paper's algorithms get, with every run drawn."""
-
-    def part_of(self, case: AuditedCase) -> list[Block]:
-        """For each search a table of its algorithms, and a picture of where all runs end."""
-        name = self.arguments[0]
-        found: list[Block] = []
-        for at, (title, runs) in enumerate(by_search(case.reached).items()):
-            picture = reached_picture(runs, case.waterfalls, title=title)
-            place = ("reached", name, runs[0].problem, runs[0].searched)
-            own = reached_table(runs), pictured(picture, *place)
-            # Two stand open, such as each joint separately and all together.
-            found += [Prose(f"{title}."), *own] if at < 2 else [Folded(title, own)]
-        return [*found, Prose(REACHED_MEANING, "note")] if found else []
+    case = page.audited(name)
+    found: list[Block] = []
+    for at, (title, runs) in enumerate(by_search(case.reached).items()):
+        picture = reached_picture(runs, case.waterfalls, title=title)
+        place = ("reached", name, runs[0].problem, runs[0].searched)
+        own = reached_table(runs), pictured(picture, *place)
+        # Two stand open, such as each joint separately and all together.
+        found += [Prose(f"{title}."), *own] if at < 2 else [Folded(title, own)]
+    return [*found, Prose(REACHED_MEANING, "note")] if found else []
 
 
-class Papers(FromBlocks):
-    """``{trajgap-papers}``: all audited cases, or those of some kinds of source, one a row."""
+def papers(page: Shown, pages: str = "", kinds: str = "", drawn: bool = False) -> list[Block]:
+    """``{trajgap-papers}``: all audited cases, or those of some kinds of source, one a row.
 
-    option_spec: ClassVar[dict[str, Any]] = {
-        "pages": directives.unchanged,
-        "kinds": directives.unchanged,
-        "drawn": directives.flag,
-    }
-
-    def made(self) -> list[Block]:
-        """A picture of the distances, and a sortable table of what was found."""
-        rows = paper_rows(self.results, self.options.get("kinds", ""))
-        for row in rows:
-            self.place(self.config.trajgap_results, f"{row.name}.json")
-        picture = [pictured(papers_drawn(rows), "papers")] if "drawn" in self.options else []
-        return [*picture, table(COLUMNS, map(self._cells, rows), "", "sortable", "papers")]
-
-    def _cells(self, row: PaperRow) -> list[Cell | str]:
-        """The paper as one cites it above what it is about, and its numbers."""
-        pages = self.options.get("pages")
+    `pages`: the folder with a page for each of them. `drawn`: whether a picture stands above.
+    """
+    found, cells = paper_rows(page.results, kinds), []
+    for row in found:
+        page.place(page.config.trajgap_results, f"{row.name}.json")
+        # The paper as one cites it above what it is about.
         called = f"{row.cited}\n{row.title}" if row.cited else row.title
-        paper = Cell(called, target="" if pages is None else f"doc:/{pages}/{row.name}")
-        return [paper, *(badge(one) if one in tuple(Evidence) else one for one in row.cells)]
+        paper = Cell(called, target=f"doc:/{pages}/{row.name}" if pages else "")
+        cells.append([paper, *(badge(x) if x in tuple(Evidence) else x for x in row.cells)])
+    picture = [pictured(papers_drawn(found), "papers")] if drawn else []
+    return [*picture, table(COLUMNS, cells, "", "sortable", "papers")]
 
 
-class SourceShown(FromCase):
-    """``{trajgap-source} CASE``: what was read, and how to cite the audit and make it again."""
+def source(page: Shown, name: str) -> list[Block]:
+    """``{trajgap-source} CASE``: what was read, and how to cite the audit and make it again.
 
-    def part_of(self, case: AuditedCase) -> list[Block]:
-        """Source, date, versions, hashes, command and BibTeX entry."""
-        made = case.provenance
-        facts = Terms(
-            (
-                ("audited", f"{made.date} with trajgap {made.trajgap}"),
-                ("case file, SHA-256", str(made.case_sha256)),
-                ("reproduce with", code(made.command)),
-            )
+    Certificates that the audit rests on are proved again where conf.py has them.
+    """
+    case = page.audited(name)
+    made = case.provenance
+    facts = Terms(
+        (
+            ("audited", f"{made.date} with trajgap {made.trajgap}"),
+            ("case file, SHA-256", str(made.case_sha256)),
+            ("reproduce with", code(made.command)),
         )
-        cite = Prose(made.citation, "source")
-        return [reference(case.source), facts, *self._proofs(made), cite]
-
-    def _proofs(self, made: Provenance) -> list[Block]:
-        """The certificates that the audit rests on, each proved again where conf.py has them."""
-        if not (made.certificates and self.config.trajgap_certificates):
-            return []
+    )
+    shown: list[Block] = [reference(case.source), facts]
+    folder = page.config.trajgap_certificates
+    if made.certificates and folder:
         rows = []
         for one in made.certificates:
-            path = self.place(self.config.trajgap_certificates, one.file)
-            verdict = proved_again(path, one.sha256)
+            verdict = proved_again(page.place(folder, one.file), one.sha256)
             rows.append((code(one.file), badge(worth(verdict)), verdict.reason))
         note = Prose("Each certificate was verified when this page was built.")
         count = f"{len(rows)} certificate{'' if len(rows) == 1 else 's'}"
-        return [Folded(count, (note, table(("file", "evidence", "what it proves"), rows)))]
+        grid = table(("file", "evidence", "what it proves"), rows)
+        shown.append(Folded(count, (note, grid)))
+    return [*shown, Prose(made.citation, "source")]
 
 
-class CertificateShown(FromBlocks):
+def certificate(page: Shown, name: str) -> list[Block]:
     """``{trajgap-certificate} FILE``: what a certificate proves, proved again by the build.
 
     A name that begins with a slash starts at the folder of conf.py.
     """
-
-    required_arguments = 1
-
-    def made(self) -> list[Block]:
-        """The interval, or an error of the build if the certificate does not prove it."""
-        name = self.arguments[0]
-        folder = "" if name.startswith("/") else self.config.trajgap_certificates
-        path = self.place(folder, name.removeprefix("/"))
-        return [proof_said(path, name=path.name)]
+    folder = "" if name.startswith("/") else page.config.trajgap_certificates
+    path = page.place(folder, name.removeprefix("/"))
+    return [proof_said(path, name=path.name)]
 
 
-class SuiteTable(FromBlocks):
-    """``{trajgap-suite}``: the instances with their bounds, one a row; sortable."""
+def suite(page: Shown, curve: str = "", labels: str = "") -> list[Block]:
+    """``{trajgap-suite}``: the instances with their bounds, one a row; sortable.
 
-    option_spec: ClassVar[dict[str, Any]] = dict.fromkeys(("curve", "labels"), directives.unchanged)
-
-    def made(self) -> list[Block]:
-        """The table; ``:labels:`` is the prefix of the labels that instances have on the site."""
-        curve, labels = self.options.get("curve"), self.options.get("labels")
-        chosen = instances_of(curve)
-        place = "" if labels is None else f"ref:{labels}{{}}".lower()
-        grid = suite_table(chosen, place, digits=9)
-        said = curve in {one.curve for one in chosen}  # the page says it already
-        return [grid.without(1) if said else grid]
+    `labels`: prefix of the labels that instances have on the site.
+    """
+    chosen = instances_of(curve or None)
+    grid = suite_table(chosen, f"ref:{labels}{{}}".lower() if labels else "", digits=9)
+    named = curve in {one.curve for one in chosen}  # the page says it already
+    return [grid.without(1) if named else grid]
 
 
-class InstanceShown(FromBlocks):
+def proved_later(one: BenchmarkInstance, within: float = 0.25) -> bool:
+    """Whether no build proves a certificate again, because that took more than so many seconds.
+
+    These are less than a sixth of the suite, and take half a minute together.
+    """
+    return one.verify_seconds is not None and one.verify_seconds > within
+
+
+def instance(page: Shown, name: str) -> list[Block]:
     """``{trajgap-instance} NAME``: bounds, hardness, and the certificate proved again."""
-
-    required_arguments = 1
-
-    def made(self) -> list[Block]:
-        """Facts of the instance, or an error of the build if its certificate does not hold."""
-        one = load_instance(self.arguments[0])
-        return [self._proof(one), instance_terms(one)]
-
-    def _proof(self, one: BenchmarkInstance) -> Prose:
-        file = one.certificate_file()
-        if file is None:
-            return Prose(f"No certificate is shipped; create it with {one.command}.")
-        path = self.place("", str(file))
-        if one.verify_seconds is not None and one.verify_seconds > PROVED_WITHIN:
-            later = f"Its proof takes {one.verify_seconds:g} s and is not part of this build."
-            return Prose(later, word=str(one.evidence))
-        return proof_said(path, one.certificate_sha256)
+    one = load_instance(name)
+    file = one.certificate_file()
+    if file is None:
+        proof = Prose(f"No certificate is shipped; create it with {one.command}.")
+    elif proved_later(one):
+        later = f"Its proof takes {one.verify_seconds:g} s and is not part of this build."
+        proof = Prose(later, word=str(one.evidence))
+    else:
+        proof = proof_said(page.place("", str(file)), one.certificate_sha256)
+    return [proof, instance_terms(one)]
 
 
-class Leaderboard(FromBlocks):
-    """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling."""
+def leaderboard(
+    page: Shown, part: str, budget: int = 1000, handling: str = "death-penalty"
+) -> list[Block | nodes.Node]:
+    """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling.
 
-    required_arguments = 1
-    option_spec: ClassVar[dict[str, Any]] = {
-        "budget": directives.positive_int,
-        "handling": directives.unchanged,
-    }
-
-    def run(self) -> list[nodes.Node]:
-        """The part that is asked for; sentences are a list."""
-        if self.arguments[0] != "said":
-            return super().run()
-        found = nodes.bullet_list()
-        found += [nodes.list_item("", *nodes_of([Prose(one)])) for one in said(*self._both())]
-        return [found]
-
-    def _both(self) -> list[Board]:
-        return [board_of(one, self.options.get("budget", 1000)) for one in HANDLINGS]
-
-    def made(self) -> list[Block]:
-        """A picture of both handlings, or a table of one of them."""
-        board = board_of(
-            self.options.get("handling", "death-penalty"), self.options.get("budget", 1000)
-        )
-        match self.arguments[0]:
-            case "picture":
-                return [pictured(boards_drawn(self._both()), "leaderboard")]
-            case "table":
-                missing = Prose(f"Not complete yet: {', '.join(board.missing)}.")
-                return [board_table(board), *([missing] if board.missing else [])]
-            case "curves":
-                return [board_parts(board, curve_of, str)]
-            case "sizes":
-                return [board_parts(board, size_of, SIZES.index)]
-        raise TrajgapError("trajgap-leaderboard: say said, picture, table, curves or sizes")
+    Sentences and picture are of both handlings.
+    """
+    board = board_of(handling, budget)
+    both = [board_of(one, budget) for one in HANDLINGS]
+    match part:
+        case "said":
+            sentences = (nodes_of([Prose(one)]) for one in said(*both))
+            items = nodes.bullet_list()
+            items += [nodes.list_item("", *one) for one in sentences]
+            return [items]
+        case "picture":
+            return [pictured(boards_drawn(both), "leaderboard")]
+        case "table":
+            missing = Prose(f"Not complete yet: {', '.join(board.missing)}.")
+            return [board_table(board), *([missing] if board.missing else [])]
+        case "curves":
+            return [board_parts(board, curve_of, str)]
+        case "sizes":
+            return [board_parts(board, size_of, SIZES.index)]
+    raise TrajgapError("trajgap-leaderboard: say said, picture, table, curves or sizes")
 
 
-DIRECTIVES: dict[str, type[SphinxDirective]] = {
-    "trajgap-card": Card,
-    "trajgap-claims": Claims,
-    "trajgap-readings": Readings,
-    "trajgap-waterfall": WaterfallShown,
-    "trajgap-reached": ReachedShown,
-    "trajgap-papers": Papers,
-    "trajgap-source": SourceShown,
-    "trajgap-certificate": CertificateShown,
-    "trajgap-suite": SuiteTable,
-    "trajgap-instance": InstanceShown,
-    "trajgap-leaderboard": Leaderboard,
+DIRECTIVES = {
+    f"trajgap-{made.__name__}": _directive(made)
+    for made in (
+        card,
+        claims,
+        readings,
+        waterfall,
+        reached,
+        papers,
+        source,
+        certificate,
+        suite,
+        instance,
+        leaderboard,
+    )
 }
 """Directives by the name that a page calls them."""

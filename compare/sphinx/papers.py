@@ -25,7 +25,7 @@ from ..documents import (
 from ..pictures import PaperBar, Picture, papers_picture
 from .results import Results
 
-_NONE = "–"
+NONE = "–"
 """A cell without a value."""
 COLUMNS = ("paper", "printed, s", "optimum or best known, s", "above it", "evidence",
            "its algorithm ends", "what was found")  # fmt: skip
@@ -63,7 +63,7 @@ class Distance:
     def above(self) -> str:
         """The same in words; a dash where something else than time alone was minimised."""
         if not self.timed:
-            return _NONE
+            return NONE
         if not any(self.shares):
             said = "the optimum" if self.evidence == Evidence.CERTIFIED else "the best known total"
         elif self.least:
@@ -109,7 +109,7 @@ class PaperRow:
         """What stands behind the paper's name, in the order of `COLUMNS`."""
         one = self.distance
         if one is None:
-            return _NONE, _NONE, _NONE, "", self.reached, self.found
+            return NONE, NONE, NONE, "", self.reached, self.found
         return f"{one.printed:g}", one.best, one.above, one.evidence, self.reached, self.found
 
 
@@ -169,7 +169,7 @@ def cited(source: StatedSource) -> str:
 def reached_of(case: AuditedCase) -> str:
     """Median gap of a paper's algorithm in its own way of searching; a dash without runs."""
     if not case.reached:
-        return _NONE
+        return NONE
     gap = case.reached[0].gap
     return "no answer" if isinstance(gap, Why) else gap.percent
 

@@ -118,11 +118,6 @@ def _read(value: Any) -> Any:
     return found
 
 
-PROVED_WITHIN = 0.25
-"""s: a certificate whose proof took at most so long, as the suite's table says, is proved again by
-each build; the others, less than a sixth, take half a minute together."""
-
-
 def instances_of(curve: str | None) -> Sequence[BenchmarkInstance]:
     """Instances of a curve by its whole name, or by a word as `trajgap suite --curve` takes it."""
     every = list_instances()

@@ -6,6 +6,7 @@ import threading
 import tomllib
 from collections.abc import Iterator
 from html import unescape
+from inspect import signature
 from tempfile import gettempdir
 from typing import Any
 from unittest.mock import Mock
@@ -176,13 +177,13 @@ def test_a_file_that_is_too_large(client: Any, monkeypatch: pytest.MonkeyPatch) 
     assert (answer.status_code, list(faults(answer))) == (413, ["motion"])
 
 
-def test_only_the_last_audits_are_kept(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_last_audits_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     class Stub:
         cases = (None,)
 
     monkeypatch.setattr(server, "audit", lambda _: Stub)
     monkeypatch.setattr(server, "page_files", lambda *_: {"a.html": "x"})
-    monkeypatch.setattr(server, "_PAGES_KEPT", 2)
+    client = server.make_form(remembered=2).test_client()
     places = [client.post("/audit", data=FIELDS).location for _ in range(3)]
     assert [client.get(place).status_code for place in places] == [404, 200, 200]
 
@@ -214,7 +215,8 @@ def test_the_guide_says_what_is_there(client: Any) -> None:
     text = client.get("/").get_data(as_text=True)
     for word in re.findall(r"\*([A-Z]\w+)\*", GUIDE):
         assert f">{word}<" in text or word == "Save", word
-    assert f"Up to {server._PAGES_KEPT} audits" in " ".join(GUIDE.split())
+    remembered = signature(server.make_form).parameters["remembered"].default
+    assert f"Up to {remembered} audits" in " ".join(GUIDE.split())
     assert server.ADDRESS in GUIDE
     assert (ROOT / "docs/pictures/form.png").is_file()
 

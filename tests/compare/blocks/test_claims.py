@@ -3,7 +3,8 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
-from trajgap.compare.blocks import Claimed, claims_shown, shown_once, word
+from trajgap.compare.blocks import Claimed, claims_shown, word
+from trajgap.compare.blocks.claims import shown_once
 from trajgap.compare.documents import Caveat, CaveatKind, Judgement, Why
 
 

@@ -14,7 +14,8 @@ from support.documents import assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
 from support.small_certificates import sealed
 from trajgap.compare.cli import certifying as cli_certify
-from trajgap.compare.documents import Uncovered
+from trajgap.compare.cli.options import ExitCode
+from trajgap.compare.documents.vocabulary import Uncovered
 from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state
@@ -87,7 +88,7 @@ def test_infeasible_is_proved(run: Run, folder: Path) -> None:
 def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
     reading = "angles-rad-v-rad-a-rad-timed"
     asked = ("solve", "irb1600-ga-cubic-bspline", "--certify", "--reading", reading)
-    (one,) = run.document(*asked, code=cli_certify.NOT_PROVED, kind="certify")["intervals"]
+    (one,) = run.document(*asked, code=ExitCode.NOT_PROVED, kind="certify")["intervals"]
     assert one["outcome"] == Uncovered.NOT_COVERED
     assert "time a B-spline too" in one["lower_why"]
 
@@ -95,7 +96,7 @@ def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
 def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
     path, state = (f"trajgap-certificates/{NAME}{end}.json" for end in ("", ".state"))
     code, out, _ = run("solve", *ONE, "--certify", "--time", "0")
-    assert code == cli_certify.NOT_PROVED
+    assert code == ExitCode.NOT_PROVED
     assert f"continue with --resume {state}" in out
     assert not Path(path).exists(), "nothing is proved"
     assert str(verify(state)).startswith("proves: ")
@@ -114,7 +115,7 @@ def test_a_refused_proof_is_not_called_certified(run: Run, monkeypatch: pytest.M
 
     monkeypatch.setattr(module, "_kind", broken)
     code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1", "--out", "c.json")
-    assert code == cli_certify.NOT_PROVED
+    assert code == ExitCode.NOT_PROVED
     assert "certified" not in out
     assert "the proof was refused" in out
     document = strict(Path("c.json").read_text())

@@ -12,7 +12,6 @@ from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules import RULES
 from trajgap.compare.cli.check_command import check_result
 from trajgap.compare.documents import (
-    VOCABULARY,
     CheckDocument,
     Document,
     Entry,
@@ -26,12 +25,12 @@ from trajgap.compare.documents import (
     filled,
     meaning,
     meanings,
-    schema_text,
     show_document,
     solve_result,
 )
 from trajgap.compare.documents.checked import outwards
-from trajgap.compare.documents.export import SCHEMA_FILE, named
+from trajgap.compare.documents.export import SCHEMA_FILE, named, schema_text
+from trajgap.compare.documents.vocabulary import VOCABULARY
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.retiming.toppra_check import Retiming, retime
 from trajgap.problem import (

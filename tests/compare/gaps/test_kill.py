@@ -21,7 +21,6 @@ from trajgap.compare.gaps import (
     Store,
     StudySession,
     Trial,
-    TrialOutcome,
     export_rows,
     load_study,
     on_dask,
@@ -31,6 +30,7 @@ from trajgap.compare.gaps import (
     run_trial,
     study_rows,
 )
+from trajgap.compare.gaps.trials import TrialOutcome
 from trajgap.problem import ProcessError
 
 
@@ -107,12 +107,11 @@ def test_an_engine_that_is_lost_ends_the_session(executor: Executor, said: str) 
         list(outcomes([small_trial()], Engine(executor, lambda: 1, "far")))
 
 
-def test_dask_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_that_does_not_answer_is_reported() -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("trajgap.compare.gaps.engines._PATIENCE", 0.2)
     with (
         pytest.raises(ProcessError, match=r"dask: no scheduler answers at tcp://127.0.0.1:9 \("),
-        on_dask("tcp://127.0.0.1:9"),
+        on_dask("tcp://127.0.0.1:9", patience=0.2),
     ):
         pass
 
@@ -121,7 +120,7 @@ def test_dask_that_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with (
         pytest.raises(ProcessError, match=r'dask: is not installed; run `.*"trajgap\[dask\]"`'),
-        on_dask("tcp://127.0.0.1:9"),
+        on_dask("tcp://127.0.0.1:9", patience=0.2),
     ):
         pass
 

@@ -20,10 +20,9 @@ from trajgap.compare.gaps import (
     leaderboard_rows,
     leaderboard_study,
     parse_study,
-    read_summaries,
     summaries_text,
-    summary_of,
 )
+from trajgap.compare.gaps.leaderboard import read_summaries, summary_of
 from trajgap.compare.gaps.rows import failed
 from trajgap.problem import CaseError
 from trajgap.problem.suite import list_instances

@@ -1,3 +1,4 @@
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -46,8 +47,8 @@ def whole(plan: StudyPlan, engine: Engine, tmp_path_factory: pytest.TempPathFact
 def test_every_combination_is_a_row_in_the_order_of_the_file(plan: StudyPlan, whole: Path) -> None:
     with Store(whole) as store:
         rows = list(study_rows(plan, store))
-        assert store.tally() == {RowStatus.FINISHED: 24, RowStatus.FAILED: 8}
-        assert "numpy" in store.notes()["software"]
+    assert Counter(row.status for row in rows) == {RowStatus.FINISHED: 24, RowStatus.FAILED: 8}
+    assert b"numpy" in whole.read_bytes()
     assert len(rows) == len(plan) == RUNS
     assert [row.seed for row in rows[:4]] == [0, 1, 2, 3]
     assert [row.handling for row in rows[:8]] == ["death-penalty"] * 4 + ["stretch"] * 4

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
-from trajgap.compare.gaps import RowStatus, canonical, engines, origin_of, run_apart, run_trial
+from trajgap.compare.gaps import RowStatus, canonical, run_apart, run_trial
+from trajgap.compare.gaps.trials import origin_of
 from trajgap.heuristics import KINDS, PSO, run
 from trajgap.problem import Processes, check
 
@@ -225,11 +226,8 @@ def is_gone(pid: int) -> bool:
     return False
 
 
-def test_a_search_that_catches_everything_is_ended_from_outside(
-    going_on: Processes, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(engines, "_GRACE", 0.5)
-    row = run_apart(small_trial("support.optimizers:hangs", seconds=0.5), going_on).row
+def test_a_search_that_catches_everything_is_ended_from_outside(going_on: Processes) -> None:
+    row = run_apart(small_trial("support.optimizers:hangs", seconds=0.5), going_on, grace=0.5).row
     assert row.status is RowStatus.FAILED
     assert row.message.startswith("support.optimizers:hangs: took longer than 0.5 s; raise")
     assert run_apart(small_trial(), going_on).row.status is RowStatus.FINISHED

@@ -15,7 +15,7 @@ from support.drawn import DURATIONS, STEPS, fall, sound
 from trajgap.compare.pictures.drawing import THEME, Picture, embedded, shown, svg
 from trajgap.compare.pictures.gap_bands import waterfall_picture
 from trajgap.compare.pictures.motion import motion_picture
-from trajgap.compare.pictures.panels import beyond
+from trajgap.compare.pictures.panels import POINTS, beyond
 from trajgap.problem import Limits, Problem, TrajgapError, extrema, fit
 from trajgap.problem.curves.uniform import TimedUniformBSpline
 
@@ -145,7 +145,7 @@ def test_limits_and_way_points_are_drawn(problem: Problem, pictures: dict[str, P
 
 
 @pytest.mark.parametrize("clock", [False, True])
-def test_stretches_beyond_a_limit_are_exact(problem: Problem, clock: bool) -> None:
+def test_stretches_beyond_a_limit_are_finer_than_a_pixel(problem: Problem, clock: bool) -> None:
     """Where time is not a polynomial of e, too."""
     h = 0.6 * DURATIONS
     if clock:
@@ -161,10 +161,10 @@ def test_stretches_beyond_a_limit_are_exact(problem: Problem, clock: bool) -> No
         ends = np.array(beyond(trajectory, j, r, -top, top)).reshape(-1, 2)
         some += len(ends)
         inside = ends[(ends > 1e-9) & (ends < h.sum() - 1e-9)]
-        np.testing.assert_allclose(np.abs(trajectory(inside, r)[:, j]), top, rtol=1e-6)
+        np.testing.assert_allclose(np.abs(trajectory(inside, r)[:, j]), top, rtol=1e-2)
         over = np.abs(trajectory(times, r)[:, j]) > top
         marked = ((times[:, None] > ends[:, 0]) & (times[:, None] < ends[:, 1])).any(axis=1)
-        near = (np.abs(times[:, None] - ends.ravel()) < 1e-6).any(axis=1)
+        near = (np.abs(times[:, None] - ends.ravel()) < h.sum() / POINTS).any(axis=1)
         assert (over == marked)[~near].all()
     assert some > 2
     assert "over" in svg(motion_picture(problem, h, title="over"))

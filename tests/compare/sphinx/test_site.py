@@ -16,8 +16,9 @@ from support.checkout import ROOT
 from trajgap.compare.audits import RULES
 from trajgap.compare.pictures import tent_picture, tent_scatter
 from trajgap.compare.sphinx import Results
+from trajgap.compare.sphinx.directives import proved_later
 from trajgap.compare.sphinx.gallery import scrape_pictures
-from trajgap.compare.sphinx.results import PROVED_WITHIN, proved_again
+from trajgap.compare.sphinx.results import proved_again
 from trajgap.problem import TrajgapError, case_schema, file_name, published_ids
 from trajgap.problem.suite import list_instances
 
@@ -334,7 +335,7 @@ def test_a_report_whose_certificate_is_another_does_not_build(tmp_path, alter, s
 
 def test_few_proofs_of_the_suite_are_left_out():
     known = list_instances()
-    slow = [one for one in known if (one.verify_seconds or 0) > PROVED_WITHIN]
+    slow = [one for one in known if proved_later(one)]
     assert len(slow) < len(known) / 6  # as its comment says
 
 
