@@ -1,10 +1,11 @@
-"""The verdict card of a case: limits, optimum, improvement and errors in at most 80 words."""
+"""The verdict card of a case: the verdict, then errors, limits and optimum in few words."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from ...problem.cases import ImprovementClaim
+from ...problem.cases import ImprovementClaim, StatementClaim
 from ..documents import (
     CARD_WORDS,
     Cause,
@@ -21,7 +22,7 @@ from ..documents import (
     more_errors,
 )
 from .card_errors import plainly
-from .card_limits import limits_line
+from .card_limits import Kept, kept_limits
 from .card_optimum import on_doubted_points, optimum_line
 from .digit_ranges import implausible
 from .roots import AGAINST
@@ -37,7 +38,7 @@ def verdict_card(
 ) -> VerdictCard:
     """The card of a case, from what its audit found.
 
-    It has at most `CARD_WORDS` words: errors that do not fit are counted.
+    Below the verdict it has at most `CARD_WORDS` words: errors that do not fit are counted.
 
     Parameters
     ----------
@@ -47,14 +48,21 @@ def verdict_card(
         Of the paper's algorithms, its own way of searching first.
     """
     words = {judgement.claim: judgement for judgement in judgements}
-    limits, judged = limits_line(study, words)
-    before = any(on_doubted_points(words[one]) for one in judged if one in words)
+    kept = kept_limits(study, words)
+    before = any(on_doubted_points(words[one]) for one in kept.claims if one in words)
+    limits = kept.said
     if before:
-        limits = f"Some way-points are doubtful. {limits}"
+        limits = " ".join(
+            [
+                "Other printed numbers contradict some way-points.",
+                *([limits] if isinstance(limits, str) else []),
+            ]
+        )
     optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
+    verdict = _verdict(study, words, kept)
     # What the first lines have said is not said again.
-    said = {(rule, one) for one in judged for rule in ("TG201", "TG210")}
+    said = {(rule, one) for one in kept.claims for rule in ("TG201", "TG210")}
     said |= {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
     far = implausible(study)
@@ -64,7 +72,8 @@ def verdict_card(
     sentences = [
         " ".join(plainly(study.case, first, far, also=also)) for first, *also in alike.values()
     ]
-    left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
+    first = [one for one in (limits, optimum) if isinstance(one, str)]
+    left = CARD_WORDS - sum(map(count_words, first))
     errors, more = _fitting(sentences, left)
     # Where an error on the card says which percentage it refutes, no line says so again.
     tells = {" ".join(plainly(study.case, c, far)) for c in grave if _tells(study, c, improved)}
@@ -91,6 +100,7 @@ def verdict_card(
     near = next((one for one in said_of_runs if one and count_words(one) <= left), None)
     left -= count_words(near or "")
     return VerdictCard(
+        verdict=verdict,
         limits=limits,
         optimum=optimum,
         reached=known(
@@ -101,6 +111,48 @@ def verdict_card(
         more=more,
         explanation=known(explanation, "none that was tried fits, or there is no room for it"),
     )
+
+
+def _verdict(study: Study, words: Mapping[str, Judgement], kept: Kept) -> str:
+    """Whether the result is optimal and keeps its limits, and how many other claims hold."""
+    every = {one: judgement.verdict for one, judgement in words.items()}
+    said: list[str] = []
+    apart: set[str] = set()
+    optimal = [c for c in study.case.claims if isinstance(c, StatementClaim)]
+    optimal = [c for c in optimal if c.checks == "optimal" and c.id in words]
+    if against := {c.id for c in optimal if every[c.id] in AGAINST}:
+        said, apart = ["Not optimal as printed."], against
+    elif unsure := {c.id for c in optimal if every[c.id] is ClaimVerdict.DEPENDS}:
+        said, apart = ["Whether the result is optimal depends on the reading."], unsure
+    if kept.verdict is ClaimVerdict.REFUTED:
+        said.append("A limit is broken.")
+        apart = apart | kept.claims
+    elif kept.verdict is ClaimVerdict.DEPENDS:
+        said.append("Whether the limits are kept depends on the reading.")
+        apart = apart | kept.claims
+    left = Counter(verdict for one, verdict in every.items() if one not in apart)
+    counts = (
+        (sum(left[one] for one in AGAINST), ("does", "do"), "not hold as printed"),
+        (left[ClaimVerdict.DEPENDS], ("depends", "depend"), "on the reading"),
+    )
+    for count, verb, what in counts:
+        of = "other claim" if said else f"of {len(every)} claim"
+        if count:
+            s = "s" if count > 1 or not said else ""
+            said.append(f"{count} {of}{s} {verb[count > 1]} {what}.")
+    return " ".join(said) or _clean(len(every), left[ClaimVerdict.SUPPORTED])
+
+
+def _clean(every: int, supported: int) -> str:
+    """What is said where nothing speaks against a claim."""
+    if not supported:
+        return "No claim can be checked from the text."
+    if supported < every:
+        be = "is" if supported == 1 else "are"
+        rest = "others" if every - supported > 1 else "other"
+        return f"{supported} of {every} claims {be} supported; the {rest} cannot be checked."
+    which = {1: "the claim is", 2: "both claims are"}.get(every, f"all {every} claims are")
+    return f"Clean: {which} supported."
 
 
 def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
@@ -179,6 +231,8 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
         ClaimVerdict.REFUTED: "does not follow from the printed totals",
         ClaimVerdict.INCONSISTENT: "contradicts other printed numbers",
         ClaimVerdict.DEPENDS: "depends on the reading",
-        ClaimVerdict.NOT_CHECKABLE: "is not checkable",
+        ClaimVerdict.NOT_CHECKABLE: "rests on a total that other printed numbers contradict"
+        if claim.id in doubtful
+        else "cannot be checked",
     }[judgement.verdict]
     return f"The claimed {shown} {what}.", {claim.id}

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from ...problem import Verdict
-from ...problem.cases import AnyClaim, StatementClaim, TimeClaim, TotalTimeClaim
+from ...problem.cases import AnyClaim, ProfiledClaim, StatementClaim, TimeClaim, TotalTimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,
     Judgement,
     Keeping,
     Rounding,
-    among,
+    Why,
+    capital,
     implausibly,
     noted,
     quoted,
@@ -24,21 +26,26 @@ from .rules import blended, judge_row
 from .stated import RowClaim, at_place, place
 from .study import Study
 
+NO_WAYPOINTS = "the text that was read contains no way-points"
 FEW = 2
 """Readings, places or totals that a sentence names; more are counted."""
 _Held = Mapping[str, Mapping[str, ClaimVerdict]]
 """What is known of the limits of printed durations, by claim and reading."""
 
 
-def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
-    """Whether the durations that a paper calls its result keep the limits.
+class Kept(NamedTuple):
+    """What a card says of the limits."""
 
-    The claims that the sentence speaks of come with it: other rows have sentences of their own.
-    """
-    case = study.case
-    unknown = "Whether the limits are kept cannot be checked"
-    if not study.has_problems:
-        return f"{unknown}: the text that was read contains no way-points.", set()
+    said: str | Why
+    verdict: ClaimVerdict
+    """On the durations that the paper calls its result: that they keep the limits."""
+    claims: frozenset[str] = frozenset()
+    """The claims that the sentence speaks of: other rows have sentences of their own."""
+
+
+def kept_limits(study: Study, words: Mapping[str, Judgement]) -> Kept:
+    """Whether the durations that a paper calls its result keep the limits."""
+    case, undecided = study.case, ClaimVerdict.NOT_CHECKABLE
     about = [
         c
         for c in case.claims
@@ -47,45 +54,53 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     meant = [c for c in case.claims if isinstance(c, RowClaim) and meant_to_keep(case, c)]
     elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
     rows = [c for c in meant if c not in elsewhere and c.id in words]
+    unknown = "Whether the limits are kept cannot be checked"
+    if not study.has_problems:
+        return Kept(Why(NO_WAYPOINTS), undecided)
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
     bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
     bare = bare and not any(isinstance(c, RowClaim) for c in case.claims)
-    without = f"{unknown}: totals are printed, but durations are not."
+    without = f"{unknown}: the text prints totals, but no durations of segments."
     if bare and not about:
-        return without, set()
+        return Kept(without, undecided)
     apart = {c.id for c in elsewhere}
     if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
+        if all(isinstance(c, ProfiledClaim) and c.profile is not None for c in elsewhere):
+            return Kept(Why("the printed durations are compared with profiles"), undecided)
         curves = " and ".join(dict.fromkeys(str(c.other_curve) for c in elsewhere))
-        return f"{unknown}: the printed durations belong to another curve ({curves}).", set()
+        return Kept(
+            f"{unknown}: the printed durations belong to another curve ({curves}).", undecided
+        )
     if not rows and not about:
-        return "The text does not say that the printed durations keep the limits.", set()
+        return Kept(Why("the text claims of no printed durations that they keep them"), undecided)
     own = own_results(case, rows)
     held = {c.id: _of_limits(study, c) for c in rows}
     stated = {c.id: words[c.id].readings for c in about}
     asked = [c.id for c in own or about]
     found = {**held, **stated}
     under = {
-        reading: {found[one].get(reading, ClaimVerdict.NOT_CHECKABLE) for one in asked}
-        for reading in study.readings
+        reading: {found[one].get(reading, undecided) for one in asked} for reading in study.readings
     }
     broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
     kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
     if kept == len(under) and not any(map(study.limited, study.pairs)):
-        return f"No limits are stated, so none can be broken{_jumping(words, asked)}.", set()
+        return Kept(Why("no limits are stated"), undecided)
     # A statement that names other rows too has its own sentence where one of those breaks a limit.
     mine = {c.id for c in own}
-    spoken = {*asked, *(c.id for c in about if not own or mine.issuperset(c.of))}
+    spoken = frozenset({*asked, *(c.id for c in about if not own or mine.issuperset(c.of))})
     jump = _jumping(words, [c.id for c in about] or asked)
     if kept == len(under):
-        return f"{_kept(study, own, _whose(study, own, held))}{jump}.", spoken
+        said = f"{_kept(study, own, _whose(study, own, held))}{jump}."
+        return Kept(said, ClaimVerdict.SUPPORTED, spoken)
     if broken == len(under):
-        return f"{_broken(study, own, held)}.", spoken
+        return Kept(f"{_broken(study, own, held)}.", ClaimVerdict.REFUTED, spoken)
     if not broken and not kept:
         where = _in_doubt(own, held)
-        undecided = f"The printed digits do not decide whether the limits{where} are kept."
-        return without if bare else undecided, spoken
-    subject = f"The durations{_in_doubt(own, held)}" if own else "The motions"
-    return f"{subject} {_differing(study, under)}{jump}.", spoken
+        open_ = f"The printed digits do not decide whether the limits{where} are kept."
+        return Kept(without if bare else open_, undecided, spoken)
+    subject = f"the durations{_in_doubt(own, held)}" if own else "the motions"
+    said = _differing(study, under, subject)
+    return Kept(f"{said}{jump}.", ClaimVerdict.DEPENDS, spoken)
 
 
 def _places(rows: Sequence[AnyClaim]) -> str:
@@ -135,12 +150,13 @@ def _kept(study: Study, own: Sequence[RowClaim], whose: str) -> str:
     share, how = 100 * (ratio - 1), "are cut off to" if cut else "round to"
     row_named = "" if len(own) == 1 else f" in {place(row)}"
     return (
-        f"As printed{row_named}, the {worst.quantity} of joint {worst.joint} exceeds its limit by "
-        f"{share:.1f} %; some values that {how} the printed digits keep every limit"
+        "The printed digits do not decide whether the limits are kept: taken literally"
+        f"{row_named}, the {worst.quantity} of joint {worst.joint} exceeds its limit by "
+        f"{share:.1f} %, but some values that {how} them keep every limit"
     )
 
 
-def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
+def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], subject: str) -> str:
     """Under which readings durations keep or break limits; an implausible one stands last."""
     keep, break_, open_ = "keep the limits", "break a limit", "cannot be checked"
     groups: dict[str, list[str]] = {keep: [], break_: [], open_: []}
@@ -150,22 +166,20 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
     far = implausible(study)
     said = {word: own for word, own in groups.items() if own}
     if len(found) > FEW:
-        (first, own), *others = said.items()
-        shares = [f"{first} under {among(own, len(found), far)}"]
-        shares += [
-            noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
+        shares = [
+            noted(f"{word} under {len(own)}", implausibly(own, far)) for word, own in said.items()
         ]
         *most, last = shares
-        return f"{', '.join(most)}{',' if len(most) > 1 else ''} and {last}"
+        ways = f"The text can be read in {len(found)} ways: {subject} {', '.join(most)}"
+        return f"{ways}{',' if len(most) > 1 else ''} and {last}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts: list[str] = []
     for word, own in ordered:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
-        mark = " (implausible)" if all(one in far for one in own) else ""
-        # What does not keep the limits breaks one, and the other way round.
-        other = "not" if parts and open_ not in said else word
-        parts.append(f"{other} under {which}{mark}")
-    return (" but " if open_ not in said else " and ").join(parts)
+        mark = ", which is implausible," if all(one in far for one in own) else ""
+        whose = "they" if parts else subject
+        parts.append(f"under {which}{mark} {whose} {word}")
+    return capital("; ".join(parts))
 
 
 def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:

@@ -105,7 +105,7 @@ class FromCase(FromBlocks):
 
 
 class Card(FromCase):
-    """``{trajgap-card} CASE``: the paper, and the verdict in at most 80 words."""
+    """``{trajgap-card} CASE``: the paper, and the verdict card."""
 
     def part_of(self, case: AuditedCase) -> list[Block]:
         """One paragraph a sentence; errors marked."""
