@@ -54,7 +54,7 @@ def verdict_card(
     if before:
         limits = " ".join(
             [
-                "Other printed numbers contradict some way-points.",
+                "Some way-points do not fit other printed numbers.",
                 *([limits] if isinstance(limits, str) else []),
             ]
         )

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from ...problem import Case, shown_bound
-from ...problem.cases import AnyClaim, ImprovementClaim, PeakClaim, StatementClaim, TotalTimeClaim
+from ...problem.cases import (
+    AnyClaim,
+    ImprovementClaim,
+    PeakClaim,
+    ProfiledClaim,
+    StatementClaim,
+    TotalTimeClaim,
+)
 from ..documents import (
     Cause,
     ClaimVerdict,
@@ -17,8 +24,7 @@ from ..documents import (
     capital,
     quoted,
 )
-from .card_optimum import MANY_TIMES
-from .roots import IMPOSSIBLE, NO_PROFILE, TABLES
+from .roots import NO_PROFILE, TABLES
 from .stated import RowClaim, at_place, place
 
 
@@ -86,8 +92,7 @@ def _plain(
         "TG102": f"The longest durations {at_place(where)} do not follow from its rows",
         "TG103": f"From the printed totals {claimed} would be {computed}, not {printed}",
         "TG105": f"{place(claim)} prints {printed} for a total that {other} gives as {computed}",
-        "TG107": f"The curve of {where} has {computed}{f', not {printed}' if printed else ''}"
-        + (", so it cannot meet them all" if head.kind == IMPOSSIBLE else ""),
+        "TG107": f"The curve of {where} has {computed}{f', not {printed}' if printed else ''}",
         "TG109": f"{where} prints {printed}, but the curve has {computed}",
         "TG201": f"The total {at_place(where)} is shorter than any motion within the limits"
         if isinstance(claim, TotalTimeClaim)
@@ -103,8 +108,8 @@ def _plain(
         "TG210": f"The durations {at_place(where)} break a limit",
         "TG211": f"A printed value does not follow from the printed durations ({where})",
         "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
-        "TG301": "With velocity limits only, shortest times scale inversely with the limit; the "
-        "two printed times do not, so at most one is the shortest",
+        "TG301": "The two printed times do not scale with their velocity limits, as shortest "
+        "times do",
         "TG304": f"{there} total is {printed}, but the profile takes {computed}"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",
@@ -113,7 +118,10 @@ def _plain(
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if head.kind == NO_PROFILE:
-        said = f"{capital(at_place(where))}, no profile was found that takes the printed {printed}."
+        plateau = f" of {claim.plateau}" if isinstance(claim, ProfiledClaim) else ""
+        said = (
+            f"{capital(at_place(where))}, no profile was found with the printed plateau{plateau}."
+        )
         return (said, *own[1:]), False
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"
@@ -141,7 +149,7 @@ def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) 
         return f"{where}a faster motion on the same curve keeps the limits", bool(where)
     # Rounded down, for it is a bound: way-points that round to the digits allow other optima.
     share = f"{at_least_percent(head.gap.lowest)} longer than"
-    if head.gap.lowest >= MANY_TIMES:
+    if head.gap.many_times:
         share = f"{shown_bound(1 + head.gap.lowest, 'lower', places=1)} times as long as"
     return f"{_whose(case, head)}at least {share} a motion within the limits", False
 

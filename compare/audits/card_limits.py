@@ -176,9 +176,10 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], subject: st
     parts: list[str] = []
     for word, own in ordered:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
-        mark = ", which is implausible," if all(one in far for one in own) else ""
-        whose = "they" if parts else subject
-        parts.append(f"under {which}{mark} {whose} {word}")
+        mark = " (implausible)" if all(one in far for one in own) else ""
+        # What does not keep the limits breaks one, and the other way round.
+        other = "they do not" if open_ not in said else f"they {word}"
+        parts.append(f"under {which}{mark} {other if parts else f'{subject} {word}'}")
     return capital("; ".join(parts))
 
 

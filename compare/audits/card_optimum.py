@@ -36,8 +36,8 @@ from .stated_totals import contradicts_its_parts, other_totals
 from .study import Pair, Study, Total
 from .waterfall import stands_in
 
-MANY_TIMES = 1.0
-"""Distance from which a multiple is easier to picture than a percentage: twice as long."""
+_MANY_TIMES = 10.0
+"""Distance beyond which a multiple says more than a percentage."""
 UNLIMITED = "no limits are stated"
 DOUBTED = "printed way-points that other printed numbers contradict"
 _LONG = 9
@@ -217,12 +217,11 @@ class _Above:
     least: str
     """“At least ” where some roundings make the distance larger."""
     far: str
-    name: str
-    best: str
+    over: str
+    """The optimum that it is above."""
 
     def __str__(self) -> str:
-        far = f"{self.least}{self.far} above the {self.name} of {self.best}"
-        return f"{_remarked(self.shown, self.remark)} is {far}"
+        return f"{_remarked(self.shown, self.remark)} is {self.least}{self.far} above {self.over}"
 
 
 @dataclass(frozen=True)
@@ -340,9 +339,9 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
             return _AtPrint(far, ends.upper is not None)
         most = None if ends.lower is None else high / ends.lower - 1
         bound, far = _bounded(low / ends.upper - 1, share, most)
-        if share >= MANY_TIMES:
+        if share >= _MANY_TIMES:
             return f"{said} is {bound}{far} the {optimum}"
-        return _Above(shown, remark, bound, far, name, shown_best)
+        return _Above(shown, remark, bound, far, f"the {optimum}")
     if ends.lower is not None and high < ends.lower:
         least = None if ends.upper is None else 1 - low / ends.upper
         bound, far = _bounded(1 - high / ends.lower, -share, least)
@@ -355,12 +354,12 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
 
 def _size(share: float) -> str:
     """How far a time is from another: as a percentage, or how many times it is."""
-    return f"{1 + share:.1f} times" if share >= MANY_TIMES else f"{_percent(share)} %"
+    return f"{1 + share:.1f} times" if share >= _MANY_TIMES else f"{_percent(share)} %"
 
 
 def _far(share: float, side: str) -> str:
     """A distance at the printed digits."""
-    return _size(share) if share >= MANY_TIMES else f"{_size(share)} {side}"
+    return _size(share) if share >= _MANY_TIMES else f"{_size(share)} {side}"
 
 
 def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
@@ -370,7 +369,7 @@ def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
     """
     if most is not None and _size(least) == _size(share) == _size(most):
         return "", _size(share)
-    if share >= MANY_TIMES:
+    if share >= _MANY_TIMES:
         return "at least ", f"{shown_bound(1 + least, 'lower', places=1)} times"
     return "at least ", at_least_percent(least)
 

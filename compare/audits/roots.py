@@ -7,8 +7,6 @@ LIMITS, TABLES, SUM, OPTIMAL = "limits", "tables", "sum", "optimal"
 its parts, durations that are not the shortest."""
 NO_PROFILE = "no profile"
 """Kind of a finding: states and limits that no profile joins."""
-IMPOSSIBLE = "impossible"
-"""Kind of a finding: conditions that no polynomial of the degree meets."""
 AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Verdicts that speak against a claim."""
 CLAIM, READINGS = "claim", "readings"

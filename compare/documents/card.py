@@ -10,7 +10,7 @@ from .entry import Count, Entry, OrWhy
 from .finding import Caveat, CaveatKind, Judgement
 from .vocabulary import ClaimVerdict, Confidence
 
-CARD_WORDS = 80
+CARD_WORDS = 100
 """Words below the verdict of a card at most: what fits a phone's first screen."""
 
 

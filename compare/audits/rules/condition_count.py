@@ -12,7 +12,6 @@ from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, named_rows
-from ..roots import IMPOSSIBLE
 from ..stated import RowClaim, all_called, called_under
 from ..study import Study
 from .peaks import largest
@@ -88,7 +87,7 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
         verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "other count"
         said += f"; the paper prints {printed}"
     elif impossible := _impossible_segments(study, claim):
-        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, IMPOSSIBLE
+        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "impossible"
         more = (
             f"No polynomial of that degree satisfies them in segment{'s' * (len(impossible) > 1)} "
             f"{' and '.join(map(str, impossible))}, where the way-points differ."
