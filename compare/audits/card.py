@@ -1,41 +1,35 @@
-"""The verdict card of a case: limits, optimum, improvement and errors in at most 80 words."""
+"""The verdict card of a case: the verdict, then errors, limits and optimum in few words."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from ...problem import Verdict
-from ...problem.cases import AnyClaim, ImprovementClaim, StatementClaim, TimeClaim, TotalTimeClaim
+from ...problem.cases import (
+    ImprovementClaim,
+    StatementClaim,
+)
 from ..documents import (
     CARD_WORDS,
     Cause,
     CaveatKind,
     ClaimVerdict,
     Judgement,
-    Keeping,
     Reached,
-    Rounding,
     Severity,
     VerdictCard,
     Waterfall,
     Why,
-    among,
     count_words,
-    implausibly,
     known,
     more_errors,
-    noted,
-    quoted,
 )
 from .card_errors import plainly
+from .card_limits import Kept, kept_limits
 from .card_optimum import on_doubted_points, optimum_line
 from .digit_ranges import implausible
-from .own_result import meant_to_keep, own_results, said_to_keep
-from .printed_row import printed_rows
-from .rules import blended, judge_row
-from .stated import RowClaim, at_place, place
 from .study import Study
-from .words import AGAINST, FEW
+from .words import AGAINST
 
 
 def verdict_card(
@@ -47,7 +41,7 @@ def verdict_card(
 ) -> VerdictCard:
     """The card of a case, from what its audit found.
 
-    It has at most `CARD_WORDS` words: errors that do not fit are counted.
+    Below the verdict it has at most `CARD_WORDS` words: errors that do not fit are counted.
 
     Parameters
     ----------
@@ -57,14 +51,21 @@ def verdict_card(
         Of the paper's algorithms, its own way of searching first.
     """
     words = {judgement.claim: judgement for judgement in judgements}
-    limits, judged = limits_line(study, words)
-    before = any(on_doubted_points(words[one]) for one in judged if one in words)
+    kept = kept_limits(study, words)
+    before = any(on_doubted_points(words[one]) for one in kept.claims if one in words)
+    limits = kept.said
     if before:
-        limits = f"Some way-points are doubtful. {limits}"
+        limits = " ".join(
+            [
+                "Some way-points do not fit other printed numbers.",
+                *([limits] if isinstance(limits, str) else []),
+            ]
+        )
     optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
+    verdict = _verdict(study, words, kept)
     # What the first lines have said is not said again.
-    said = {(rule, one) for one in judged for rule in ("TG201", "TG210")}
+    said = {(rule, one) for one in kept.claims for rule in ("TG201", "TG210")}
     said |= {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
     far = implausible(study)
@@ -74,7 +75,8 @@ def verdict_card(
     sentences = [
         " ".join(plainly(study.case, first, far, also=also)) for first, *also in alike.values()
     ]
-    left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
+    first = [one for one in (limits, optimum) if isinstance(one, str)]
+    left = CARD_WORDS - sum(map(count_words, first))
     errors, more = _fitting(sentences, left)
     # Where an error on the card says which percentage it refutes, no line says so again.
     tells = {" ".join(plainly(study.case, c, far)) for c in grave if _tells(study, c, improved)}
@@ -101,6 +103,7 @@ def verdict_card(
     near = next((one for one in said_of_runs if one and count_words(one) <= left), None)
     left -= count_words(near or "")
     return VerdictCard(
+        verdict=verdict,
         limits=limits,
         optimum=optimum,
         reached=known(
@@ -111,6 +114,48 @@ def verdict_card(
         more=more,
         explanation=known(explanation, "none that was tried fits, or there is no room for it"),
     )
+
+
+def _verdict(study: Study, words: Mapping[str, Judgement], kept: Kept) -> str:
+    """Whether the result is optimal and keeps its limits, and how many other claims hold."""
+    every = {one: judgement.verdict for one, judgement in words.items()}
+    said: list[str] = []
+    apart: set[str] = set()
+    optimal = [c for c in study.case.claims if isinstance(c, StatementClaim)]
+    optimal = [c for c in optimal if c.checks == "optimal" and c.id in words]
+    if against := {c.id for c in optimal if every[c.id] in AGAINST}:
+        said, apart = ["Not optimal as printed."], against
+    elif unsure := {c.id for c in optimal if every[c.id] is ClaimVerdict.DEPENDS}:
+        said, apart = ["Whether the result is optimal depends on the reading."], unsure
+    if kept.verdict is ClaimVerdict.REFUTED:
+        said.append("A limit is broken.")
+        apart = apart | kept.claims
+    elif kept.verdict is ClaimVerdict.DEPENDS:
+        said.append("Whether the limits are kept depends on the reading.")
+        apart = apart | kept.claims
+    left = Counter(verdict for one, verdict in every.items() if one not in apart)
+    counts = (
+        (sum(left[one] for one in AGAINST), ("does", "do"), "not hold as printed"),
+        (left[ClaimVerdict.DEPENDS], ("depends", "depend"), "on the reading"),
+    )
+    for count, verb, what in counts:
+        of = "other claim" if said else f"of {len(every)} claim"
+        if count:
+            s = "s" if count > 1 or not said else ""
+            said.append(f"{count} {of}{s} {verb[count > 1]} {what}.")
+    return " ".join(said) or _clean(len(every), left[ClaimVerdict.SUPPORTED])
+
+
+def _clean(every: int, supported: int) -> str:
+    """What is said where nothing speaks against a claim."""
+    if not supported:
+        return "No claim can be checked from the text."
+    if supported < every:
+        be = "is" if supported == 1 else "are"
+        rest = "others" if every - supported > 1 else "other"
+        return f"{supported} of {every} claims {be} supported; the {rest} cannot be checked."
+    which = {1: "the claim is", 2: "both claims are"}.get(every, f"all {every} claims are")
+    return f"Clean: {which} supported."
 
 
 def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
@@ -189,200 +234,8 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
         ClaimVerdict.REFUTED: "does not follow from the printed totals",
         ClaimVerdict.INCONSISTENT: "contradicts other printed numbers",
         ClaimVerdict.DEPENDS: "depends on the reading",
-        ClaimVerdict.NOT_CHECKABLE: "is not checkable",
+        ClaimVerdict.NOT_CHECKABLE: "rests on a total that other printed numbers contradict"
+        if claim.id in doubtful
+        else "cannot be checked",
     }[judgement.verdict]
     return f"The claimed {shown} {what}.", {claim.id}
-
-
-_Held = Mapping[str, Mapping[str, ClaimVerdict]]
-"""What is known of the limits of printed durations, by claim and reading."""
-
-
-def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
-    """Whether the durations that a paper calls its result keep the limits.
-
-    The claims that the sentence speaks of come with it: other rows have sentences of their own.
-    """
-    case = study.case
-    unknown = "Whether the limits are kept cannot be checked"
-    if not study.has_problems:
-        return f"{unknown}: the text that was read contains no way-points.", set()
-    about = [
-        c
-        for c in case.claims
-        if isinstance(c, StatementClaim) and c.checks == "within_limits" and c.id in words
-    ]
-    meant = [c for c in case.claims if isinstance(c, RowClaim) and meant_to_keep(case, c)]
-    elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
-    rows = [c for c in meant if c not in elsewhere and c.id in words]
-    timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
-    bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
-    bare = bare and not any(isinstance(c, RowClaim) for c in case.claims)
-    without = f"{unknown}: totals are printed, but durations are not."
-    if bare and not about:
-        return without, set()
-    apart = {c.id for c in elsewhere}
-    if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
-        curves = " and ".join(dict.fromkeys(str(c.other_curve) for c in elsewhere))
-        return f"{unknown}: the printed durations belong to another curve ({curves}).", set()
-    if not rows and not about:
-        return "The text does not say that the printed durations keep the limits.", set()
-    own = own_results(case, rows)
-    held = {c.id: _of_limits(study, c) for c in rows}
-    stated = {c.id: words[c.id].readings for c in about}
-    asked = [c.id for c in own or about]
-    found = {**held, **stated}
-    under = {
-        reading: {found[one].get(reading, ClaimVerdict.NOT_CHECKABLE) for one in asked}
-        for reading in study.readings
-    }
-    broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
-    kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
-    if kept == len(under) and not any(map(study.limited, study.pairs)):
-        return f"No limits are stated, so none can be broken{_jumping(words, asked)}.", set()
-    # A statement that names other rows too has its own sentence where one of those breaks a limit.
-    mine = {c.id for c in own}
-    spoken = {*asked, *(c.id for c in about if not own or mine.issuperset(c.of))}
-    jump = _jumping(words, [c.id for c in about] or asked)
-    if kept == len(under):
-        return f"{_kept(study, own, _whose(study, own, held))}{jump}.", spoken
-    if broken == len(under):
-        return f"{_broken(study, own, held)}.", spoken
-    if not broken and not kept:
-        where = _in_doubt(own, held)
-        undecided = f"The printed digits do not decide whether the limits{where} are kept."
-        return without if bare else undecided, spoken
-    subject = f"The durations{_in_doubt(own, held)}" if own else "The motions"
-    return f"{subject} {_differing(study, under)}{jump}.", spoken
-
-
-def _places(rows: Sequence[AnyClaim]) -> str:
-    """Where few rows stand; empty if they stand in more places."""
-    found = list(dict.fromkeys(map(place, rows)))
-    return " and ".join(found) if 0 < len(found) <= FEW else ""
-
-
-def _whose(study: Study, own: Sequence[RowClaim], held: _Held) -> str:
-    """The durations that a sentence speaks of: named where it does not hold of all others too."""
-    said = [set(held[c.id].values()) for c in own]
-    others = [
-        c
-        for c in study.case.claims
-        if isinstance(c, RowClaim)
-        and c not in own
-        and set(_of_limits(study, c).values()) not in said
-    ]
-    where = _places(own)
-    apart = where and not {place(c) for c in others}.intersection(map(place, own))
-    if not others:
-        return "The printed durations"
-    return (
-        f"The durations {at_place(where)}" if apart else "The durations of the paper's own result"
-    )
-
-
-def _kept(study: Study, own: Sequence[RowClaim], whose: str) -> str:
-    """That limits are kept; if it takes the rounding of the digits, of which row how much."""
-    found = []
-    for row in own:
-        for posed in printed_rows(study, row):
-            checked = posed.check_or_none
-            if checked is None or checked.limits is Verdict.PASS:
-                continue
-            cut = posed.rounding.verdict is Rounding.BREAKS
-            ratio = 0.0 if checked.worst is None else checked.worst.ratio
-            found.append((cut, ratio, row, checked.worst))
-    if not found:
-        return f"{whose} keep the limits"
-    cut, ratio, row, worst = max(found, key=lambda one: one[:2])
-    where = "" if len(own) == 1 or not cut else f", those in {place(row)}"
-    # Below one per cent the printed digits themselves end.
-    if worst is None or ratio < 1.01 or worst.joint is None:
-        how = "if digits were cut off" if cut else "within rounding"
-        return f"{whose} keep the limits{where} {how}"
-    share, how = 100 * (ratio - 1), "are cut off to" if cut else "round to"
-    row_named = "" if len(own) == 1 else f" in {place(row)}"
-    return (
-        f"As printed{row_named}, the {worst.quantity} of joint {worst.joint} exceeds its limit by "
-        f"{share:.1f} %; some values that {how} the printed digits keep every limit"
-    )
-
-
-def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
-    """Under which readings durations keep or break limits; an implausible one stands last."""
-    keep, break_, open_ = "keep the limits", "break a limit", "cannot be checked"
-    groups: dict[str, list[str]] = {keep: [], break_: [], open_: []}
-    for reading, words in found.items():
-        broken, kept = ClaimVerdict.REFUTED in words, words == {ClaimVerdict.SUPPORTED}
-        groups[break_ if broken else keep if kept else open_].append(reading)
-    far = implausible(study)
-    said = {word: own for word, own in groups.items() if own}
-    if len(found) > FEW:
-        (first, own), *others = said.items()
-        shares = [f"{first} under {among(own, len(found), far)}"]
-        shares += [
-            noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
-        ]
-        *most, last = shares
-        return f"{', '.join(most)}{',' if len(most) > 1 else ''} and {last}"
-    ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
-    parts: list[str] = []
-    for word, own in ordered:
-        which = " and ".join(quoted(one, study.case.labels) for one in own)
-        mark = " (implausible)" if all(one in far for one in own) else ""
-        # What does not keep the limits breaks one, and the other way round.
-        other = "not" if parts and open_ not in said else word
-        parts.append(f"{other} under {which}{mark}")
-    return (" but " if open_ not in said else " and ").join(parts)
-
-
-def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
-    """Whether printed durations keep the limits, by reading, whatever else is said of the claim.
-
-    A sum that is wrong refutes the claim too, and breaks no limit.
-    """
-    each: dict[str, set[ClaimVerdict]] = {}
-    for found in judge_row(study, claim):
-        if found.reading is not None:
-            each.setdefault(found.reading, set()).add(ClaimVerdict(found.kind))
-    for row in printed_rows(study, claim):
-        unknown = row.unmoved is not None
-        keeping = Keeping.UNDECIDED if unknown else row.keeping
-        each.setdefault(row.reading, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))
-    worst = (ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE, ClaimVerdict.SUPPORTED)
-    return {reading: next(word for word in worst if word in said) for reading, said in each.items()}
-
-
-_MEANS = {
-    Keeping.KEEPS: ClaimVerdict.SUPPORTED,
-    Keeping.CONSISTENT: ClaimVerdict.SUPPORTED,
-    Keeping.BREAKS: ClaimVerdict.REFUTED,
-}
-"""What a word for the limits is as a verdict; anything else is not checkable."""
-
-
-def _in_doubt(own: Sequence[AnyClaim], held: _Held) -> str:
-    """Where the durations stand that may break a limit, unless that is everywhere."""
-    doubtful = [c for c in own if set(held[c.id].values()) != {ClaimVerdict.SUPPORTED}]
-    where = _places(doubtful)
-    return f" {at_place(where)}" if where and len(doubtful) < len(own) else ""
-
-
-def _jumping(words: Mapping[str, Judgement], asked: Iterable[str]) -> str:
-    caveats = (c for one in asked for c in words[one].caveats)
-    jumps = any(c.kind is CaveatKind.JUMPING for c in caveats)
-    return ", on curves whose velocity jumps" if jumps else ""
-
-
-def _broken(study: Study, own: Sequence[RowClaim], held: _Held) -> str:
-    """Which of the durations break a limit, and whether anything printed says that they keep it."""
-    every = "however the digits were rounded"
-    if not own:
-        return f"No motion as short as the one said to keep the limits keeps them, {every}"
-    wrong = [c for c in own if set(held[c.id].values()) == {ClaimVerdict.REFUTED}] or list(own)
-    whose = _whose(study, wrong, held)
-    if len(wrong) < len(own) and not _places(wrong):
-        whose = f"{len(wrong)} of {len(own)} printed sets of durations"
-    if any(said_to_keep(study.case, c) for c in wrong):
-        return f"{whose} break a limit {every}"
-    return f"{whose} break a limit {every}, but the text does not claim that they keep it"

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from ...problem import Case, shown_bound
-from ...problem.cases import AnyClaim, ImprovementClaim, StatementClaim, TotalTimeClaim
+from ...problem.cases import (
+    AnyClaim,
+    ImprovementClaim,
+    PeakClaim,
+    ProfiledClaim,
+    StatementClaim,
+    TotalTimeClaim,
+)
 from ..documents import (
     Cause,
     ClaimVerdict,
@@ -73,39 +80,48 @@ def _plain(
         said, named = _not_optimal(case, head, cause, far)
         return (f"Called optimal in {_places(claim, also, case)}, but {said}.",), named
     where = _places(claim, also, case)
+    there = f"{at_place(where)}, the printed"
     percent = isinstance(claim, ImprovementClaim) and claim.percent is not None
     claimed = "the reduction" if percent else "the saving"
     others = [place(case.claim(one)) for one in head.between if one != head.claim]
     other = others[0] if others else "another place"
     printed, computed = head.printed or "", head.computed or ""
     sentence = {
-        "TG101": f"{at_place(where)}, the durations add up to {computed}, not {printed}",
+        "TG101": f"{at_place(where)}, the durations add up to {computed}, but the printed total is "
+        f"{printed}",
         "TG102": f"The longest durations {at_place(where)} do not follow from its rows",
         "TG103": f"From the printed totals {claimed} would be {computed}, not {printed}",
         "TG105": f"{place(claim)} prints {printed} for a total that {other} gives as {computed}",
-        "TG107": f"{where} has {computed}{f', not {printed}' if printed else ''}",
+        "TG107": f"The curve of {where} has {computed}{f', not {printed}' if printed else ''}",
         "TG109": f"{where} prints {printed}, but the curve has {computed}",
         "TG201": f"The total {at_place(where)} is shorter than any motion within the limits"
         if isinstance(claim, TotalTimeClaim)
         else f"The durations {at_place(where)} break a limit"
         + (", unless digits were cut off" if head.verdict is ClaimVerdict.SUPPORTED else ""),
         "TG202": f"The motion of {where} is not continuous",
-        "TG203": f"A printed peak does not follow from the printed durations ({where})",
+        "TG203": f"{there} peak is {printed}, but the printed durations give {computed}"
+        if isinstance(claim, PeakClaim) and len(claim.printed) == 1
+        else f"Printed peaks do not follow from the printed durations ({where})",
         "TG208": f"A printed mean or integral does not follow from the printed durations ({where})",
         "TG209": f"A printed peak exceeds its printed limit, although {where} says that the limit "
         "is kept",
         "TG210": f"The durations {at_place(where)} break a limit",
         "TG211": f"A printed value does not follow from the printed durations ({where})",
         "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
-        "TG301": "Shortest times scale inversely with velocity limits; the two printed ones do not",
-        "TG304": f"A printed total is not that of its profile ({where})"
+        "TG301": "The two printed times do not scale with their velocity limits, as shortest "
+        "times do",
+        "TG304": f"{there} total is {printed}, but the profile takes {computed}"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",
-        "TG305": f"A printed total is not the shortest along its path ({where})",
+        "TG305": f"{at_place(where)}, {printed} is called the shortest along a path whose shortest "
+        f"time is {computed}",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if head.kind == NO_PROFILE:
-        said = f"{capital(at_place(where))}, no profile was found with the printed plateau."
+        plateau = f" of {claim.plateau}" if isinstance(claim, ProfiledClaim) else ""
+        said = (
+            f"{capital(at_place(where))}, no profile was found with the printed plateau{plateau}."
+        )
         return (said, *own[1:]), False
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"
@@ -161,7 +177,7 @@ def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:
         for c in case.table_claims(tables[0])
         if isinstance(c, RowClaim)
     )
-    said = f"{shown} agree in all {numbers} numbers"
+    said = f"{shown} print the same {numbers} numbers"
     hit = [case.claim(one.claim) for one in cause.consequences if one.claim]
     counted = [c for c in hit if isinstance(c, ImprovementClaim) and c.percent is not None]
     if counted:

@@ -7,15 +7,18 @@ from dataclasses import dataclass, replace
 
 from ...nlp import Evidence, Solution, Status
 from ...problem import Coupling, shown_bound
-from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, TimeClaim
+from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, StatementClaim, TimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,
     Judgement,
     Keeping,
     Waterfall,
+    Why,
     at_least_percent,
+    capital,
     count_words,
+    quoted,
     ranged,
 )
 from .digit_ranges import all_exact, at_ratios, off_ratios, optimum_range, planned_apart
@@ -28,10 +31,14 @@ from .rounding import meet, rounds_to
 from .stated import RowClaim, other_objective, printed_total
 from .study import Pair, Study, Total
 from .waterfall import stands_in
-from .words import FEW, percent, seconds
+from .words import FEW, NO_WAYPOINTS, percent, seconds
 
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
+UNLIMITED = "no limits are stated"
+DOUBTED = "printed way-points that other printed numbers contradict"
+_LONG = 9
+"""Words of a label or an objective from which a sentence leaves it out."""
 _PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
 """What an optimum is called, and several of them."""
 _REMARKS = {
@@ -44,7 +51,7 @@ _REMARKS = {
 
 def optimum_line(
     study: Study, waterfalls: Sequence[Waterfall], words: Mapping[str, Judgement], before: bool
-) -> str:
+) -> str | Why:
     """How far the printed totals are from the optimum under the default reading.
 
     Parameters
@@ -53,17 +60,27 @@ def optimum_line(
         Whether the line before has said that way-points are in doubt.
     """
     if not study.has_problems:
-        return _beside_profiles(study, words) or "No optimum can be computed."
+        return _beside_profiles(study, words) or (
+            f"Neither limits nor an optimum can be checked: {NO_WAYPOINTS}."
+        )
     main = [w for w in waterfalls if w.reading == study.main_reading]
     beside = [found for w in main for found in _beside(study, w)]
     if not beside or stands_in(study):
         return _without_totals(study, words)
-    where = ["under the default reading"] if len(study.readings) > 1 else []
+    if all(isinstance(part, _Unknown) and part.why == UNLIMITED for part in beside):
+        return f"{capital(UNLIMITED)}: none can be broken, and no motion is the shortest."
+    where = [f"under {_default(study)}"] if len(study.readings) > 1 else []
     doubted = any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim)
     if doubted and not before:
-        where.insert(0, "with doubtful way-points")
+        where.insert(0, f"with {DOUBTED}")
     sentence = ", ".join([*where, _side_by_side(beside)])
     return f"{sentence[:1].upper()}{sentence[1:]}."
+
+
+def _default(study: Study) -> str:
+    """The default reading by its label, unless that is long."""
+    label = quoted(study.main_reading, study.case.labels)
+    return label if count_words(label) <= _LONG else "the default reading"
 
 
 def on_doubted_points(judgement: Judgement) -> bool:
@@ -73,9 +90,6 @@ def on_doubted_points(judgement: Judgement) -> bool:
 
 def _side_by_side(parts: Sequence[_Part]) -> str:
     """Printed totals beside their optima: what differs first, then how many agree."""
-    above = [part for part in parts if isinstance(part, _Above)]
-    if len(parts) == len(above) == FEW and len({part.name for part in above}) == 1:
-        return _together(above)
     aims = [part for part in parts if isinstance(part, _OtherAim)]
     alike = {(aim.called, aim.certified, aim.ratios) for aim in aims}
     if len(parts) == len(aims) == FEW and len(alike) == 1:
@@ -109,7 +123,7 @@ def _agreement(agreeing: Sequence[_Agrees], others: bool, parts: int) -> str:
     return f"{which} agree with their {names.pop() if len(names) == 1 else 'optima'}"
 
 
-def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
+def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str | Why:
     """What is said of printed times where none is on the curve whose optimum is known.
 
     The case file's curve may only stand in for one that it cannot name, and its optimum is none of
@@ -123,6 +137,8 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     curves = ", ".join(dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None))
     if curves:
         return f"The printed times belong to another curve ({curves}), so no optimum applies."
+    if not timed:
+        return Why("no time is claimed")
     return "No printed total can be compared with an optimum."
 
 
@@ -133,9 +149,15 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     above = {row.problem: above_shortest(row) for row in rows}
     # From a hundredth of a percent on, as the claims do.
     longer = [percent(more, ".2g") for more in above.values() if more > 1e-4]
+    named = {c.id for c in claims}
+    said = [c for c in study.case.claims if isinstance(c, StatementClaim)]
+    optimal = any(named.intersection(c.of) for c in said if c.checks == "optimal")
+    note = "" if optimal else ", which the text does not call the shortest"
     if len(longer) > 1:
-        return f" The algorithm's totals are {' and '.join(longer)} above the shortest totals."
-    return f" One total of the algorithm is {longer[0]} above the shortest." if longer else ""
+        far = " and ".join(longer)
+        return f" The algorithm's totals{note}{',' if note else ''} are {far} above the shortest."
+    one = f" One total of the algorithm{note}{',' if note else ''} is"
+    return f"{one} {longer[0]} above the shortest." if longer else ""
 
 
 def _beside_profiles(study: Study, words: Mapping[str, Judgement]) -> str:
@@ -150,7 +172,7 @@ def _beside_profiles(study: Study, words: Mapping[str, Judgement]) -> str:
         return ""
     profiles = [*dict.fromkeys(str(c.profile) for c in timed)]
     # Without way-points, times are judged along one way, which is not printed.
-    way = "" if study.has_problems else ", for one common distance"
+    way = "" if study.has_problems else " over one distance, which is not printed"
     agreeing = _agreeing([words[c.id].verdict for c in timed], profiles, way)
     return agreeing + (_above_shortest(study, timed) if study.has_problems else "")
 
@@ -162,15 +184,18 @@ def _agreeing(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str], way: st
     if len(verdicts) == 1:
         own = profile_called(profiles)
         if not agree and not differ:
-            return f"It is open whether the printed time agrees with the {own}{way}."
-        return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}{way}."
+            return f"It is open whether the printed time is that of the {own}{way}."
+        return f"The printed time is {'' if agree else 'not '}that of the {own}{way}."
     which = f"{agree} of {len(verdicts)}"
     if agree == len(verdicts):
         which = "Both" if agree == FEW else f"All {agree}"
     left = len(verdicts) - agree - differ
     note = f"; {left} {'is' if left == 1 else 'are'} open" if left else ""
-    own = profile_called(profiles, "profiles")
-    return f"{which} printed times agree with their {own}{way}{note}."
+    if agree == 1:
+        return f"{which} printed times is that of the {profile_called(profiles)}{way}{note}."
+    return (
+        f"{which} printed times are those of the {profile_called(profiles, 'profiles')}{way}{note}."
+    )
 
 
 @dataclass(frozen=True)
@@ -189,12 +214,11 @@ class _Above:
     least: str
     """“At least ” where some roundings make the distance larger."""
     far: str
-    name: str
-    best: str
+    over: str
+    """The optimum that it is above."""
 
     def __str__(self) -> str:
-        far = f"{self.least}{self.far} above the {self.name} of {self.best}"
-        return f"{_remarked(self.shown, self.remark)} is {far}"
+        return f"{_remarked(self.shown, self.remark)} is {self.least}{self.far} above {self.over}"
 
 
 @dataclass(frozen=True)
@@ -237,7 +261,8 @@ class _OtherAim:
         motion = "motions on the same curves" if many else "motion on the same curve"
         takes = f"{'take' if many else 'takes'} {' and '.join(self.spans)}"
         return (
-            f"{what} for time alone{self.called}; the shortest {known}{motion}{self.ratios} {takes}"
+            f"{what} for time alone{self.called}, so {'they' if many else 'it'} need not be the "
+            f"shortest; the shortest {known}{motion}{self.ratios} {takes}"
         )
 
 
@@ -250,20 +275,12 @@ def _remarked(shown: str, remark: str) -> str:
     return f"{shown}, which {remark}," if remark else shown
 
 
-def _together(parts: Sequence[_Above]) -> str:
-    """Two printed totals beside their optima in one phrase."""
-    first, *others = parts
-    rest = [f"{_remarked(p.shown, p.remark)} {p.least}{p.far} above {p.best}" for p in others]
-    return f"{first}, and {' and '.join(rest)}"
-
-
 def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     """A printed total beside its optimum, and others that are printed of it; none where none is."""
     pair = Pair(waterfall.problem, waterfall.reading)
     solution = study.optimum(pair)
     if why := _unknown(solution):
-        free = "without limits there is no shortest motion"
-        return [_Unknown(why if study.limited(pair) else free)]
+        return [_Unknown(why if study.limited(pair) else UNLIMITED)]
     claim: AnyClaim | None = own_result(study.case, bare_totals(study.case, waterfall.problem))
     if waterfall.claim is not None:
         claim = study.case.claim(waterfall.claim)
@@ -295,7 +312,7 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     minimised = other_objective(study.case, row.claim)
     if minimised is not None and share > 0:
         # A longer objective is left to the claims.
-        called = f" ({minimised})" if count_words(minimised) <= 8 else ""
+        called = f" ({minimised})" if count_words(minimised) <= _LONG else ""
         ratios, proven = at_ratios(solution.problem), " (proven)" if certified else ""
         return _OtherAim((shown,), called, certified, ratios, (span + proven,))
     remark = _kept_there(row)
@@ -321,7 +338,7 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
         bound, far = _bounded(low / ends.upper - 1, share, most)
         if share >= _MANY_TIMES:
             return f"{said} is {bound}{far} the {optimum}"
-        return _Above(shown, remark, bound, far, name, shown_best)
+        return _Above(shown, remark, bound, far, f"the {optimum}")
     if ends.lower is not None and high < ends.lower:
         least = None if ends.upper is None else 1 - low / ends.upper
         bound, far = _bounded(1 - high / ends.lower, -share, least)
@@ -387,17 +404,16 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], total: Total, seconds: float) ->
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
-    own = "that optimising each joint separately gives"
-    own += "" if all_exact(row) else " at the printed digits"
-    own += "" if proven else " (best known)"
-    span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
+    at = "" if all_exact(row) else " at the printed digits"
+    own = f"what optimising each joint separately gives{at}{'' if proven else ' (best known)'}"
+    own += f", {ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total.interval
     if meet((low, high), (wide.lowest, wide.highest)):
-        return f"agrees with the {span} {own}"
+        return f"agrees with {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
     shown = " to ".join(dict.fromkeys(map(_percent, shares)))
-    return f"is {shown} % {'above' if longer else 'below'} the {span} {own}"
+    return f"is {shown} % {'above' if longer else 'below'} {own}"
 
 
 def _percent(share: float) -> str:

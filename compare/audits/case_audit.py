@@ -100,7 +100,7 @@ class CaseAudit(InNotebooks):
 
     @cached_property
     def card(self) -> VerdictCard:
-        """The verdict in at most 80 words."""
+        """The verdict, and in few words what it rests on."""
         return verdict_card(self.study, self.judgements, self.causes, self.waterfalls, self.reached)
 
     @cached_property

@@ -128,7 +128,7 @@ def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reache
     hits = np.array([[np.inf if one is None else one for one in run.reached] for run in group.runs])
     proved = reference is not None and not isinstance(reference.lower, Why)
     beside = "the optimum" if proved else "the best known total"
-    beside = beside if group.seal else f"{beside} on drawn way-points"
+    beside = beside if group.seal else f"{beside} on way-points drawn at random"
     beside = "what the joints' own optima give" if group.apart else beside
     return Reached(
         problem=group.problem,

@@ -13,6 +13,7 @@ AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Verdicts that speak against a claim."""
 CLAIM, READINGS = "claim", "readings"
 """Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""
+NO_WAYPOINTS = "the text that was read contains no way-points"
 FEW = 2
 """Readings, places or totals that a sentence names; more are counted."""
 

@@ -59,7 +59,7 @@ def reference(source: StatedSource) -> Prose:
 def card_shown(card: VerdictCard, tally: str = "", drawn: Drawn | None = None) -> CardShown:
     """A card, with a tally below it and a picture beside it."""
     beside = card.explanation if isinstance(card.explanation, str) else ""
-    return CardShown(card.lines, card.against, beside, drawn, tally)
+    return CardShown(card.verdict, card.against, card.lines, beside, drawn, tally)
 
 
 def counts_said(judgements: Sequence[Judgement]) -> str:

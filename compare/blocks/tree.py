@@ -154,9 +154,11 @@ class Drawn:
 class CardShown:
     """The verdict card, with the picture beside it."""
 
+    verdict: str
+    """The verdict in a few words."""
+    errors: tuple[str, ...]
     lines: tuple[str, ...]
     """Limits, optimum, improvement."""
-    errors: tuple[str, ...]
     beside: str = ""
     """The most charitable explanation; empty for none."""
     drawn: Drawn | None = None
@@ -167,8 +169,12 @@ class CardShown:
     @property
     def sentences(self) -> tuple[tuple[str, str], ...]:
         """Everything that it says, in order, with the weight of each; no empty ones."""
-        own = [*((line, "") for line in self.lines), *((line, "against") for line in self.errors)]
-        own += [(self.beside, "beside"), (self.tally, "tally")]
+        own = [(self.verdict, "verdict"), *((line, "against") for line in self.errors)]
+        own += [
+            *((line, "") for line in self.lines),
+            (self.beside, "beside"),
+            (self.tally, "tally"),
+        ]
         return tuple(one for one in own if one[0])
 
 

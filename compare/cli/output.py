@@ -120,6 +120,7 @@ def _parts(block: Block) -> Iterator[Text | Columns]:
         said = " ".join(filter(None, (block.word, block.text, block.doi)))
         weights = {
             "heading": "bold",
+            "verdict": "bold",
             "note": "dim",
             "tally": "dim",
             "against": "bold red",

@@ -271,19 +271,18 @@ class Reached(Entry):
             found = f"no answer in {self.unanswered} of {self.runs} runs"
             return f"The {self.name} finds {found}."
         if isinstance(self.gap, Why):
-            end = f"ends at {self.median:.4f} s; {self.gap}"
-            return f"The median of {self.runs} runs of the {self.name} {end}."
-        far = f"{apart(self.gap)} {self.beside}"
-        return f"The median of {self.runs} runs of the {self.name} ends {far}."
+            return self._ends(f"the {self.name}", f"at {self.median:.4f} s", f"; {self.gap}")
+        return self._ends(f"the {self.name}", f"{apart(self.gap)} {self.beside}")
 
     @property
     def briefly(self) -> str:
         """The same in fewer words; empty without an answer."""
         if isinstance(self.gap, Why):
             return ""
-        return (
-            f"The median of {self.runs} runs of its algorithm ends {apart(self.gap)} {self.beside}."
-        )
+        return self._ends("its algorithm", f"{apart(self.gap)} {self.beside}")
+
+    def _ends(self, name: str, where: str, note: str = "") -> str:
+        return f"Replayed {self.runs} times, {name} ends {where} (median){note}."
 
 
 def apart(gap: Gap) -> str:

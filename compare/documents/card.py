@@ -1,4 +1,4 @@
-"""The verdict card, in at most 80 words, and what stands beside the word of a verdict."""
+"""The verdict card, and what stands beside the word of a verdict."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ from .entry import Count, Entry, OrWhy
 from .finding import Caveat, CaveatKind, Judgement
 from .vocabulary import ClaimVerdict, Confidence
 
-CARD_WORDS = 80
-"""Words of a card at most: what is read at a glance, and fits a phone's first screen."""
+CARD_WORDS = 100
+"""Words below the verdict of a card at most: what fits a phone's first screen."""
 
 
 class VerdictCard(Entry):
-    """The verdict in plain sentences: limits, optimum, improvement, then each error."""
+    """The verdict in a few words, then what it rests on: errors, limits, optimum, improvement."""
 
-    limits: str
+    verdict: str
+    """What became of the claims, and whether a result is optimal and keeps the limits."""
+    limits: OrWhy[str]
     """Whether the printed durations keep the limits."""
-    optimum: str
-    """How far the printed total is from the optimum, or why that is not checkable."""
+    optimum: OrWhy[str]
+    """How far the printed total is from the optimum, or why that cannot be checked."""
     reached: OrWhy[str]
     """How near the paper's algorithm gets when it is run many times."""
     improvement: OrWhy[str]
@@ -36,13 +38,13 @@ class VerdictCard(Entry):
     def sentences(self) -> tuple[str, ...]:
         """Everything that the card says, in order."""
         beside = [self.explanation] if isinstance(self.explanation, str) else []
-        return (*self.lines, *self.against, *beside)
+        return (self.verdict, *self.against, *self.lines, *beside)
 
     @property
     def lines(self) -> tuple[str, ...]:
         """What it says of limits, optimum, algorithm and improvement."""
-        last = [one for one in (self.reached, self.improvement) if isinstance(one, str)]
-        return (self.limits, self.optimum, *last)
+        every = (self.limits, self.optimum, self.reached, self.improvement)
+        return tuple(one for one in every if isinstance(one, str))
 
     @property
     def against(self) -> tuple[str, ...]:
@@ -51,8 +53,8 @@ class VerdictCard(Entry):
 
     @property
     def words(self) -> int:
-        """How many words the card has."""
-        return count_words(" ".join(self.sentences))
+        """How many words stand below the verdict."""
+        return count_words(" ".join(self.sentences[1:]))
 
 
 def tally(judgements: Sequence[Judgement]) -> str:

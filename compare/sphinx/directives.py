@@ -108,7 +108,7 @@ def _flag(given: str | None) -> bool:
 
 
 def card(page: Shown, name: str) -> list[Block]:
-    """``{trajgap-card} CASE``: the paper, and the verdict in at most 80 words."""
+    """``{trajgap-card} CASE``: the paper, and the verdict card."""
     case = page.audited(name)
     return [reference(case.source), card_shown(case.card)]
 

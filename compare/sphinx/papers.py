@@ -132,24 +132,10 @@ def paper_row(name: str, case: AuditedCase) -> PaperRow:
     counts = Counter(one.verdict for one in case.verdicts)
     decided = counts.total() - counts[ClaimVerdict.NOT_CHECKABLE]
     against = decided > counts[ClaimVerdict.SUPPORTED]
-    found, named = _found(case, counts, against), cited(case.source)
+    named = cited(case.source)
+    found = case.card.errors[0] if case.card.errors else case.card.verdict
     distance, reached = distance_of(case), reached_of(case)
     return PaperRow(name, named, case.title, distance, reached, found, decided, against)
-
-
-def _found(case: AuditedCase, counts: Counter[ClaimVerdict], against: bool) -> str:
-    """The gravest thing that was found, in one sentence."""
-    supported, every = counts[ClaimVerdict.SUPPORTED], counts.total()
-    if case.card.errors:
-        return case.card.errors[0]
-    if against:
-        found = every - supported - counts[ClaimVerdict.NOT_CHECKABLE]
-        return f"{found} of {every} claims do not hold as printed or depend on the reading."
-    if not supported:
-        return "No claim can be checked from the text."
-    if supported == every:
-        return f"Clean: all {every} claims are supported."
-    return f"{supported} of {every} claims are supported; the others cannot be checked."
 
 
 def cited(source: StatedSource) -> str:

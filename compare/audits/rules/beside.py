@@ -129,7 +129,9 @@ class Beside:
     @property
     def around(self) -> str:
         """The motion's number with what rounding may change of it."""
-        return f"{self.exact:.6g} ± {self.reach:.1g} {self.unit}"
+        # A reach below the last digit that is shown says nothing.
+        near = self.reach < 5e-7 * abs(self.exact)
+        return f"{self.exact:.6g}{'' if near else f' ± {self.reach:.1g}'} {self.unit}"
 
     def told(self, name: str) -> str:
         """A number of a motion by its name, with what is printed and how the two agree."""

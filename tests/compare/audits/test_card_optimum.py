@@ -26,7 +26,7 @@ def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity
 @pytest.mark.parametrize(
     ("coupling", "said"),
     [
-        ("per-joint", "the 4.0000 to 4.0010 s that optimising each joint separately"),
+        ("per-joint", "what optimising each joint separately gives, 4.0000 to 4.0010 s"),
         ("shared", "the "),
     ],
 )
@@ -72,9 +72,9 @@ def test_a_total_that_was_cut_off_is_said_to_agree_if_it_was(value: str, end: st
 @pytest.mark.parametrize(
     ("verdicts", "said"),
     [
-        ("not checkable", "whether the printed time agrees with the shortest s-curve profile."),
-        ("inconsistent", "does not agree with the shortest s-curve profile."),
-        ("supported, refuted, not checkable", "1 of 3 printed times agree with"),
+        ("not checkable", "whether the printed time is that of the shortest s-curve profile."),
+        ("inconsistent", "is not that of the shortest s-curve profile."),
+        ("supported, refuted, not checkable", "1 of 3 printed times is that of"),
         ("supported, refuted, not checkable", "; 1 is open."),
     ],
 )
@@ -119,7 +119,7 @@ def test_two_totals_stand_in_one_sentence() -> None:
         for one, limit in (("a", 1.5), ("b", 1))
     )
     assert line(*parts, *asked, rows=[[0, 2]]) == (
-        f"2.100 s is 5.0 % above {OPTIMUM}, and 3.150 s 5.0 % above 3.0000 s."
+        f"2.100 s is 5.0 % above {OPTIMUM}; 3.150 s is 5.0 % above the proven optimum of 3.0000 s."
     )
 
 

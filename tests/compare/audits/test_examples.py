@@ -218,4 +218,4 @@ def test_what_is_said_of_a_profile(name: str, claim: str) -> None:
 def test_a_card_is_about_profiles_where_the_curve_only_stands_in() -> None:
     """No motion within the limits starts above them, and no claim is about one that does."""
     optimum = examined("ruckig-issue-128").document.card.optimum
-    assert optimum == "1 of 2 printed times agree with their shortest s-curve profiles."
+    assert optimum == "1 of 2 printed times is that of the shortest s-curve profile."
