@@ -49,9 +49,10 @@ def solve(
     """Shortest total time with shared durations, found by an exact NLP and proved if possible.
 
     If a certificate for exactly this problem ships with the package, it is verified. Otherwise a
-    branch and bound searches for a lower bound, if the kind of curve has one. The answer includes
-    the bound that `trajgap.verify` proves: the optimum then lies between ``lower_bound`` and the
-    total. The answer is *optimal* if both are at most a millionth apart.
+    branch and bound searches for a lower bound, if the kind of curve has one and there are at most
+    twelve segments. If nothing is proved within 1 %, a linear program bounds the total of any curve
+    from below. The optimum lies between ``lower_bound`` and the total; the answer is *optimal* if
+    both are at most a millionth apart.
 
     Parameters
     ----------
@@ -64,9 +65,9 @@ def solve(
     starts, seed, initial, known, known_nodal, seconds
         As in `trajgap.nlp.optimum.solve`.
     prove : float
-        Budget of the branch and bound, as a share of what an audit allows one problem; 0 turns it
-        off. Boxes are counted, not seconds, so no answer depends on how busy the machine is;
-        ``seconds`` still ends it.
+        Budget of the branch and bound, as a share of what an audit allows one problem; 0 leaves out
+        every bound that no shipped certificate proves. Boxes are counted, not seconds, so no answer
+        depends on how busy the machine is; ``seconds`` still ends it.
 
     Returns
     -------
