@@ -73,8 +73,8 @@ class Evidence(StrEnum):
     CERTIFIED = "certified"
     """Lower and upper bound within the stated gap, verified again."""
     BEST_KNOWN = "best known"
-    """The best value found and checked, with nothing proved below it. A gap against it is a lower
-    estimate of the true one."""
+    """The best value found and checked, with no bound proved within 1 % below it. A gap against it
+    is a lower estimate of the true one."""
     UNCONVERGED = "not converged"
     """The value of a checked motion at which the search stopped before it met the conditions of an
     optimum: shorter ones are to be expected."""
@@ -155,7 +155,8 @@ class Solution(SearchResult):
         For `not_attained`: the value that the totals found approach, s. It is the infimum if
         `approach_proved` is true, and otherwise the best known estimate of it.
     lower_bound : float or None
-        A lower bound that `trajgap.verify` has proved, s.
+        A lower bound that the arithmetic of `trajgap.verify` proves, s: of the declared curve, or
+        of any curve. None if nothing is proved.
     kkt_residual : float or None
         Scaled residual for the reduced problem, with all active peaks found again.
     active : tuple of Active

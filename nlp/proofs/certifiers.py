@@ -99,15 +99,13 @@ def prompt(problem: ExactProblem) -> Certifier | None:
 
     Boxes of durations close sooner than those of values at the breaks while they are few.
     """
-    if covered(problem) is not None:
+    if problem.segments > _MANY or covered(problem) is not None:
         return None
     able = [
         c for c in _able(problem, Subject.DECLARED) if not c.prepares and c.missing(problem) is None
     ]
     if not able or able[0].instant:
         return able[0] if able else None
-    if problem.segments > _MANY:
-        return None
     return able[0] if problem.segments > _FEW else able[-1]
 
 

@@ -150,17 +150,19 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
         *optimal* if the bound is within a millionth of its total. Unchanged if nothing is proved,
         or if the answer lies farther below the bound: then one of the two is wrong.
     """
-    if found is None or found.upper is None or found.durations is None:
+    if found is None or found.infeasible:
         return solution
-    if not solution.best <= float(found.upper) * (1 + TOLERANCE):
-        start = np.array([float(h) for h in found.durations])
+    proved = found.durations
+    if proved is not None and not solution.best <= float(sum(proved)) * (1 + TOLERANCE):
+        start = np.array([float(h) for h in proved])
         again = solve(solution.problem, initial=start, known=start)
         solution = again if again.best < solution.best else solution
     lower = float(found.lower)
     if Fraction(lower) > found.lower:
         lower = math.nextafter(lower, -math.inf)
-    if solution.infimum is None and lower * (1.0 - KEPT) <= solution.best < lower:
-        solution = _proved_answer(solution, found.durations)
+    near = solution.infimum is None and lower * (1.0 - KEPT) <= solution.best < lower
+    if near and proved is not None:
+        solution = _proved_answer(solution, proved)
     if not lower <= solution.best < math.inf:
         return solution
     shortest = solution.infimum is None and lower >= solution.best * (1.0 - GAP)

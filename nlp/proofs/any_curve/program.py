@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.optimize import linprog
+from scipy.sparse import hstack
 
 from ....problem import Array
 from .tangents import Floats, Ints, matrix
@@ -49,7 +50,7 @@ def least_total(
     if found.status != 2:
         return None
     # Infeasible: by how little may all rows be broken? The weights, times enough, prove it.
-    wide = np.concatenate([left.toarray(), np.ones((len(rows), 1))], axis=1)
+    wide = hstack([left, np.ones((len(rows), 1))], format="csr")
     found = linprog(
         np.append(0 * cost, 1.0),
         A_ub=-wide,

@@ -85,8 +85,21 @@ def _restless(stated: StatedProblem) -> list[int]:
 
 
 def missing(problem: ExactProblem) -> str | None:
-    """Why no bound over all curves is computed for a problem, or None."""
-    restless = _restless(stated_problem(problem))
+    """Why no interval over all curves is computed for a problem, or None."""
+    asked = question(problem)
+    why = unbounded(problem, asked)
+    if why is not None:
+        return why
+    for k, steps in enumerate(asked.steps):
+        # In no time at all it may be passed at any speed, in however little time it may not.
+        if not any(steps) and asked.shortest[k] == 0:
+            return f"nothing moves in segment {k + 1}, whose duration may go to 0"
+    return None
+
+
+def unbounded(problem: ExactProblem, asked: FreeQuestion) -> str | None:
+    """Why not even a lower bound is computed, or None."""
+    restless = _restless(asked.stated)
     if not restless:
         return "nothing moves"
     for order, name in enumerate(("velocity", "acceleration")):
@@ -94,7 +107,6 @@ def missing(problem: ExactProblem) -> str | None:
             limit = problem.limits[j][order]
             if limit is not None and limit.low <= 0:
                 return f"joint {problem.joints[j]} moves, but its {name} limit is 0"
-    asked = question(problem)
     if not asked.joints:
         return "nothing that moves is limited"
     for j, velocity, *ends in zip(asked.joints, asked.velocity, *asked.ends, strict=True):
@@ -103,10 +115,6 @@ def missing(problem: ExactProblem) -> str | None:
             return f"joint {problem.joints[j]} has no velocity limit, and its ends are free"
         if velocity is not None and any(v > velocity[0] for v in given):
             return f"a velocity prescribed at an end exceeds the limit of joint {problem.joints[j]}"
-    for k, steps in enumerate(asked.steps):
-        # In no time at all it may be passed at any speed, in however little time it may not.
-        if not any(steps) and asked.shortest[k] == 0:
-            return f"nothing moves in segment {k + 1}, whose duration may go to 0"
     return None
 
 

@@ -302,12 +302,37 @@ class Search:
         target : float
             Bound that is enough, s.
         """
-        box, scaled = self.kind.root(), self.scaled
+        box = self.kind.root()
         if any(low > high for low, high in box):
             return self.beyond
+        return self.node(box, self._touching(durations, speeds), target, None)
+
+    def at_once(self, durations: Array, speeds: Array) -> Fraction:
+        """What one linear program with tangents at a known motion proves of all durations, s.
+
+        Parameters
+        ----------
+        durations : ndarray, shape (segments,)
+            s.
+        speeds : ndarray, shape (way-points, joints)
+        """
+        box, unit = self.kind.root(), self.scaled.time
+        if any(low > high for low, high in box):
+            return self.cap
+        low, high = np.array([[float(x) for x in side] for side in box]).T / unit
+        rows = self._touching(durations, speeds)
+        found = least_total(self.scaled, rows, low, high, float(self.cap) / unit)
+        weights = np.zeros(len(rows)) if found is None else found[1]
+        used = weights > 0
+        leaf = Node(box, rows[used], weights[used], -np.inf, rows[:0])
+        return min(self.exact(leaf, 12)[0], self.cap)
+
+    def _touching(self, durations: Array, speeds: Array) -> Ints:
+        """Limits of the change of speeds, and tangents at a known motion."""
+        scaled = self.scaled
         v = np.nan_to_num(speeds) * scaled.time / scaled.angle
         tangents = reach_rows(scaled, durations / scaled.time, v, -np.inf)
-        return self.node(box, np.concatenate([change_rows(scaled), tangents]), target, None)
+        return np.concatenate([change_rows(scaled), tangents])
 
     def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[Weighted]]:
         """What a leaf's weights, rounded to this many digits, prove; and its weighted rows."""
