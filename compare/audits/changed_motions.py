@@ -71,13 +71,14 @@ def changes_of_motion(
 def _ratios(peaks: Array, limits: Array) -> Array:
     """Ratios of peaks to limits; 0 where both are 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        found: Array = np.nan_to_num(peaks / limits, nan=0.0)
+        found: Array = np.nan_to_num(peaks[..., : limits.shape[-1]] / limits, nan=0.0)
     return found
 
 
 def _room(row: PrintedRow[Claim]) -> float:
     """How far digits that are rounded or cut off move peaks, to first order, as a share of them."""
-    tops = [top for order in (1, 2, 3) for top in largest(row, order)]
+    orders = range(1, 1 + len(row.posed().limits.quantities))
+    tops = [top for order in orders for top in largest(row, order)]
     reaches = [box_reach(row, top) / abs(top.value) for top in tops if top.value != 0.0]
     return 2.0 * max(reaches, default=0.0)
 
@@ -198,8 +199,8 @@ def _other_limits(
 
 
 def _peaks(problem: Problem, times: Array) -> Array:
-    """Largest absolute derivatives, shape (batch, joints, 3), rad and s."""
-    plain = Limits(velocity=1.0, acceleration=1.0, jerk=1.0, joints=len(problem.joints))
+    """Largest absolute derivatives, shape (batch, joints, orders), rad and s."""
+    plain = Limits(1.0, 1.0, 1.0, snap=1.0, joints=len(problem.joints))
     return evaluate(replace(problem, limits=plain), times).ratios
 
 

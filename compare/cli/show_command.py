@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import cast
 
+from ...problem import QUANTITIES, Quantity
 from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
 from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
@@ -85,7 +86,7 @@ def _asked(document: ShowDocument, case: Case) -> list[Block]:
         curve = one.curve().name + _ends(one)
         if one.durations.ratios not in (None, "free"):
             curve += f", {ratio_words(one.durations.ratios)}"
-        said = (_limit(one, name) for name in ("velocity", "acceleration", "jerk"))
+        said = (_limit(one, name) for name in QUANTITIES)
         limits = "; ".join(each for each in said if each) or "none"
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
         slides |= any(one.linear)
@@ -121,7 +122,7 @@ def _zeros(orders: Sequence[int], values: object, where: str) -> str:
     return f", {names} 0 {where}" if names and values is None else ""
 
 
-def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]) -> str:
+def _limit(one: Statement, quantity: str) -> str:
     """A limit as printed, with the unit that it is read in; empty if there is none."""
     printed = getattr(one.limits, quantity)
     if printed is None:
@@ -129,5 +130,5 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     numbers = list(map(str, printed)) if isinstance(printed, Sequence) else [str(printed)]
     units = getattr(one.units, quantity)
     if len(numbers) == 1 and isinstance(units, tuple):
-        units = one.unit(quantity)
+        units = one.unit(cast(Quantity, quantity))
     return f"{quantity} {' '.join(with_unit(numbers, units))}"

@@ -223,6 +223,8 @@ class Limited(StrEnum):
     """Of a joint."""
     JERK = "jerk"
     """Of a joint."""
+    SNAP = "snap"
+    """Of a joint: the derivative of its jerk."""
     POSITION = "position"
     """Angle of a joint, or position of a sliding joint."""
     DURATION = "duration"
@@ -231,7 +233,13 @@ class Limited(StrEnum):
     """The durations define no curve."""
 
 
-UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
+UNITS = {
+    "position": "rad",
+    "velocity": "rad/s",
+    "acceleration": "rad/s²",
+    "jerk": "rad/s³",
+    "snap": "rad/s⁴",
+}
 """Units of what is limited, as everything is computed of joints that turn."""
 
 

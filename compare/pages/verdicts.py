@@ -8,7 +8,7 @@ from itertools import groupby
 
 import numpy as np
 
-from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
+from ...problem import Case, Coupling, Problem, file_name
 from ...problem.cases import Statement
 from ..audits import RULES, CaseAudit, Study, claim_text, place, plainly
 from ..blocks import (
@@ -152,7 +152,7 @@ def _problems(study: Study) -> Grid:
 
 def _limits(problem: Problem, statement: Statement) -> str:
     parts = []
-    for name in QUANTITIES:
+    for name in problem.limits.quantities:
         if problem.limits.is_uneven(name):
             low, high = (
                 both_units(statement, name, x.tolist(), ".6g") for x in problem.limits.ends(name)

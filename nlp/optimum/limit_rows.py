@@ -27,7 +27,7 @@ and a descent keeps its rows to 1e-12."""
 class ExactRows:
     """Limits to first order about one motion, in log durations and free derivatives.
 
-    A stretch by c divides v, a, j by c, c², c³, so a derivative's excess is log(|value|/limit)/r:
+    A stretch by c divides a derivative of order r by cʳ, so its excess is log(|value|/limit)/r:
     its gradient is −1 along a stretch, whatever the order and the units. A position's excess is
     counted in spans of the joint's way-points; that of a derivative whose side is 0, in shares of
     the joint's mean rate.
@@ -124,7 +124,7 @@ def near_limits(
     degrees = np.array(trajectory.degrees)
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found = [np.zeros((5, 0))]
-    for r in (1, 2, 3, 0):
+    for r in (*range(1, 1 + limits.sides.shape[2]), 0):
         low, high = (
             limits.sides[..., r - 1] if r else (-limits.position_lower, limits.position_upper)
         )
@@ -185,6 +185,6 @@ def _by_nodal(problem: Problem, points: list[Extremum], slope: Array) -> Array:
     """Gradients by the free derivatives of all joints, (points, free · joints), in their limits."""
     own = np.eye(len(problem.joints))[[e.joint for e in points]]
     units, widest = np.ones((MAX_COEFFICIENTS, len(problem.joints))), problem.limits.widest.T
-    units[1:4] = np.where(np.isfinite(widest), widest, 1.0)
+    units[1 : 1 + len(widest)] = np.where(np.isfinite(widest), widest, 1.0)
     orders = [order for _, order in problem.piecewise.free_derivatives]
     return np.asarray(slope[:, :, None] * own[:, None] * units[orders]).reshape(len(points), -1)

@@ -97,7 +97,7 @@ def way_start(problem: Problem) -> Array:
     Not by what the worst of all exceeds: among many segments one is always far worse than most.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0))
-    velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
+    velocity, acceleration = problem.limits.sides.min(axis=0).T[:2]  # the smaller sides
     with np.errstate(divide="ignore", invalid="ignore"):
         fast = np.where(way > 0, WAY.dwell * way / velocity, 0.0).max(axis=1)
         turn = np.sqrt(np.where(way > 0, WAY.turn * way / acceleration, 0.0)).max(axis=1)
@@ -120,7 +120,7 @@ def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
     """By how much each segment would have to be stretched, were it alone."""
     worst = np.zeros(len(trajectory.durations))
     below, above = problem.limits.sides
-    for r in (1, 2, 3):
+    for r in range(1, 1 + below.shape[1]):
         wanted = np.isfinite(below[:, r - 1]) | np.isfinite(above[:, r - 1])
         if not wanted.any():
             continue

@@ -108,7 +108,8 @@ def problem_seal(problem: Problem) -> str:
     -------
     str
     """
-    return seal(problem_document(exact_problem(problem)))
+    left_out = {name: str(vars(problem.limits)[name].tolist()) for name in problem.limits.unproved}
+    return seal(problem_document(exact_problem(problem)) | left_out)
 
 
 def _other(curve: Curve) -> dict[str, Any]:

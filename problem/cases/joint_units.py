@@ -9,6 +9,7 @@ from ..printed import (
     AccelerationUnits,
     JerkUnits,
     PositionUnits,
+    SnapUnits,
     Strict,
     TimeUnit,
     UnitOrEach,
@@ -27,6 +28,7 @@ class Units(Strict):
     velocity: VelocityUnits = None
     acceleration: AccelerationUnits = None
     jerk: JerkUnits = None
+    snap: SnapUnits = None
     time: TimeUnit = None
 
 

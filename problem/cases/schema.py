@@ -182,6 +182,7 @@ class LimitsBlock(Strict):
     velocity: OneOrEachSized = None
     acceleration: OneOrEachSized = None
     jerk: OneOrEachSized = None
+    snap: OneOrEachSized = None
     position_lower: OneOrEachLowerPosition = None
     position_upper: OneOrEachUpperPosition = None
 

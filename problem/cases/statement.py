@@ -28,6 +28,7 @@ _LIMITED: dict[str, Quantity] = {
     "velocity": "velocity",
     "acceleration": "acceleration",
     "jerk": "jerk",
+    "snap": "snap",
     "position_lower": "position",
     "position_upper": "position",
 }
@@ -373,6 +374,7 @@ class Statement:
             velocity=self._sizes("velocity", digits),
             acceleration=self._sizes("acceleration", digits),
             jerk=self._sizes("jerk", digits),
+            snap=self._sizes("snap", digits),
             position_lower=position_lower,
             position_upper=position_upper,
         )

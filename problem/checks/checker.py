@@ -29,7 +29,7 @@ class Verdict(StrEnum):
     VIOLATED = "violated"
     """Some limit is exceeded by more than the tolerance, rounding errors included."""
     DISCONTINUOUS = "discontinuous"
-    """Position or velocity jumps at a break (or acceleration, if jerk is limited)."""
+    """Position or velocity jumps at a break, or a derivative below one that is limited."""
     UNDECIDED = "undecided"
     """The bound on rounding errors does not separate the peak from its limit."""
 
@@ -41,8 +41,8 @@ class Peak:
     joint: str | None
     """Joint label; None for a segment duration."""
     quantity: str
-    """"position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations
-    define none."""
+    """"position", "velocity", "acceleration", "jerk", "snap", "duration"; or "curve" if the
+    durations define none."""
     segment: int
     """Segment, from 0."""
     time: float | None
@@ -81,11 +81,12 @@ class Check(InNotebooks):
     peaks: tuple[Peak, ...]
     """One per joint and quantity."""
     jumps: tuple[Jump, ...]
-    """Discontinuities of position, velocity and acceleration."""
+    """Discontinuities of position, velocity and acceleration, and of jerk if snap is limited."""
     total_time: float
     """Sum of the durations, s."""
     stretch: float
-    """c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight."""
+    """c* = max (|v|/V, √(|a|/A), ∛(|j|/J), ∜(|s|/S)): stretching all durations by it makes them
+    tight."""
     feasible_time: float | None
     feasible_why: str | None
     tight_time: float | None
@@ -319,10 +320,8 @@ def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tu
         *_duration_peaks(problem, h),
     ]
     jumps, hidden = jumps_of(problem, trajectory, error)
-    jerk_limited = problem.limits.limited[:, 2]
-    serious = [
-        jump for jump in jumps if jump.order < 2 or jerk_limited[problem.joints.index(jump.joint)]
-    ]
+    forbidden = problem.limits.smooth_orders
+    serious = [jump for jump in jumps if jump.order <= forbidden[problem.joints.index(jump.joint)]]
     verdict = Verdict.PASS
     for p in peaks:
         slack = _slack(problem, p)
