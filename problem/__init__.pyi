@@ -85,6 +85,7 @@ from .files import (
 )
 from .in_notebooks import InNotebooks as InNotebooks
 from .limits import (
+    BRAKING as BRAKING,
     QUANTITIES as QUANTITIES,
     USUAL as USUAL,
     Limits as Limits,

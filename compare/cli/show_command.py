@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import cast
 
-from ...problem import QUANTITIES, Quantity
+from ...problem import BRAKING, Quantity
 from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
 from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
@@ -13,6 +13,9 @@ from ..documents import ShowDocument, capital, quoted, show_document
 from .input import read_case
 from .options import AsJson, Out, ProblemId, ReadingId, Source
 from .output import answer
+
+_LIMITED = ("velocity", "acceleration", BRAKING, "jerk", "snap")
+"""Limits in the order in which they are shown."""
 
 
 def show(
@@ -86,7 +89,7 @@ def _asked(document: ShowDocument, case: Case) -> list[Block]:
         curve = one.curve().name + _ends(one)
         if one.durations.ratios not in (None, "free"):
             curve += f", {ratio_words(one.durations.ratios)}"
-        said = (_limit(one, name) for name in QUANTITIES)
+        said = (_limit(one, name) for name in _LIMITED)
         limits = "; ".join(each for each in said if each) or "none"
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
         slides |= any(one.linear)

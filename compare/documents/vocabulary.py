@@ -220,7 +220,9 @@ class Limited(StrEnum):
     VELOCITY = "velocity"
     """Of a joint."""
     ACCELERATION = "acceleration"
-    """Of a joint."""
+    """Of a joint; where its deceleration has a limit of its own, while the speed grows."""
+    DECELERATION = "deceleration"
+    """Of a joint: its acceleration while the speed falls."""
     JERK = "jerk"
     """Of a joint."""
     SNAP = "snap"
@@ -237,6 +239,7 @@ UNITS = {
     "position": "rad",
     "velocity": "rad/s",
     "acceleration": "rad/s²",
+    "deceleration": "rad/s²",
     "jerk": "rad/s³",
     "snap": "rad/s⁴",
 }

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
+from ...problem.checks import one_sided_sizes
 from ...problem.curves import Trajectory
 
 DENSE = 24
@@ -75,7 +76,12 @@ def slowed(problem: Problem, nodal: Array, factor: float) -> Array:
 
 @lru_cache(maxsize=16)
 def stretching(problem: Problem) -> Problem:
-    """The problem without the limits that no stretch repairs: sides of 0."""
+    """The problem without the limits that no stretch repairs, sides of 0, and in narrow ones.
+
+    Where deceleration has a limit of its own, the smaller size on both sides is quicker to judge.
+    """
+    if problem.limits.braking.any():
+        problem = replace(problem, limits=problem.limits.narrow)
     sides = problem.limits.sides
     if (sides > 0).all():
         return problem
@@ -130,6 +136,10 @@ def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
             ratio = np.where(wanted & (limit > 0.0), np.abs(values) / limit, 0.0)
         ratio = np.where(np.isnan(places), 0.0, ratio)
         worst = np.maximum(worst, ratio.max(axis=(0, 2)) ** (1.0 / r))
+    for j in np.flatnonzero(problem.limits.braking):
+        v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
+        own = problem.limits.ends("acceleration")[1][j], problem.limits.deceleration[j]
+        worst = np.maximum(worst, np.sqrt(one_sided_sizes(v, a).T / own).max(axis=1))
     return worst
 
 

@@ -329,12 +329,17 @@ def printed_problem(statement: Statement) -> ExactProblem:
                 pairs[place, order] = below, most
             column[j] = column[j].upper
         joined = _joined(pairs)
-        columns.append(
-            [
-                joined[place, order] if (place, order) in joined else own(column[j], name, j)
-                for place, j in enumerate(statement.joints)
-            ]
-        )
+        found = [
+            joined[place, order] if (place, order) in joined else own(column[j], name, j)
+            for place, j in enumerate(statement.joints)
+        ]
+        if order == 2:
+            # An acceleration lies within the larger limit, whatever the sign of the speed.
+            braking = each(limits.deceleration, total)
+            apart = [own(braking[j], name, j) for j in statement.joints]
+            both = zip(found, apart, strict=True)
+            found = [a if a is None or d is None else max(a, d, key=_high) for a, d in both]
+        columns.append(found)
     low, high = (
         [own(each(getattr(limits, name), total)[j], "position", j) for j in statement.joints]
         for name in ("position_lower", "position_upper")

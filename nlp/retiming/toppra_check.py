@@ -189,6 +189,8 @@ def not_applicable(trajectory: Trajectory, limits: Limits) -> str | None:
     moving = _moving(trajectory)
     if not moving.any():
         return "nothing moves"
+    if limits.braking.any():
+        return "deceleration has a limit of its own, and paths are re-timed within one size only"
     if limits.uneven:
         return (
             "the two sides of a limit differ in size, and paths are re-timed only within equal ones"

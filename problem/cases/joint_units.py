@@ -31,6 +31,11 @@ class Units(Strict):
     snap: SnapUnits = None
     time: TimeUnit = None
 
+    @property
+    def deceleration(self) -> UnitOrEach:
+        """That of acceleration."""
+        return self.acceleration
+
 
 def unit_of(units: UnitOrEach, joint: int) -> str | None:
     """The unit of one joint, by its position in the robot's list."""

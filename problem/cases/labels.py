@@ -35,6 +35,7 @@ _SHOWN = {
 _LIMITS = {
     "velocity": "velocity limits",
     "acceleration": "acceleration limits",
+    "deceleration": "deceleration limits",
     "jerk": "jerk limits",
     "snap": "snap limits",
     "position_lower": "lower position limits",

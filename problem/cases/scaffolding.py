@@ -15,7 +15,7 @@ import numpy as np
 from ..characters import listed
 from ..errors import CaseError, TrajgapError
 from ..files import read_text
-from ..limits import ORDERS, QUANTITIES, USUAL, Limits
+from ..limits import BRAKING, ORDERS, QUANTITIES, USUAL, Limits
 from ..printed import CHOICES, MINUS_SIGNS, Printed, Quantity, check_unit, is_linear, scale
 from .declaration import FAMILIES
 from .faults import Faults
@@ -328,17 +328,20 @@ def _stated(
     found: dict[str, str] = {}
     added: dict[str, str | tuple[str, ...]] = {}
     for order, key in enumerate(QUANTITIES[:USUAL]):
-        below, above = limits.sides[:, :, order]
-        if np.isinf(limits.sides[:, :, order]).all():
+        low, high = limits.ends(key)
+        if np.isinf([low, high]).all():
             continue
         per = "/s" if order == 0 else f"/s^{order + 1}"
         si = tuple(("m" if is_linear(one) else "rad") + per for one in each(position))
         unit = units.get(key, si if len(set(si)) > 1 else si[0])
         added[key] = unit
-        ends = zip(scaled(-below, unit), scaled(above, unit), strict=True)
+        ends = zip(scaled(low, unit), scaled(high, unit), strict=True)
         found[key] = _one_or_each(
             [repr(high) if low == -high else f"[{low!r}, {high!r}]" for low, high in ends]
         )
+    if limits.braking.any():
+        slower = scaled(limits.deceleration, added["acceleration"])
+        found[BRAKING] = _one_or_each([repr(x) for x in slower])
     for key in ("position_lower", "position_upper"):
         values = getattr(limits, key)
         if np.isfinite(values).any():

@@ -13,12 +13,15 @@ from ..arrays import Array
 from ..curves import Enclosed, Extremum, Furthest, Trajectory, as_durations, furthest
 from ..errors import CurveError, SingularError
 from ..in_notebooks import InNotebooks
-from ..limits import ORDERS, QUANTITIES, half_range
+from ..limits import BRAKING, ORDERS, QUANTITIES, half_range
 from ..problem import Problem
 from .jumps import Jump, jumps_of
+from .one_sided import one_sided_extreme
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
+STANDING = 1e-9
+"""Share of a joint's largest speed below which it stands, and neither speeds up nor brakes."""
 
 
 class Verdict(StrEnum):
@@ -41,8 +44,8 @@ class Peak:
     joint: str | None
     """Joint label; None for a segment duration."""
     quantity: str
-    """"position", "velocity", "acceleration", "jerk", "snap", "duration"; or "curve" if the
-    durations define none."""
+    """"position", "velocity", "acceleration", "deceleration", "jerk", "snap", "duration"; or
+    "curve" if the durations define none."""
     segment: int
     """Segment, from 0."""
     time: float | None
@@ -137,6 +140,9 @@ def _derivative_peaks(
     orders = np.flatnonzero(limited.any(axis=(0, 1))).tolist()
     reach = {r: furthest(trajectory, r + 1, error[:, r + 1]) for r in orders}
     for j, r in np.argwhere(limited.any(axis=0)).tolist():
+        if r == 1 and problem.limits.braking[j]:
+            peaks += _one_sided_peaks(problem, h, trajectory, error, j)
+            continue
         top, size, ratio, bound = _nearest(
             trajectory, reach[r], j, sides[:, j, r].tolist(), error[:, r + 1]
         )
@@ -144,6 +150,26 @@ def _derivative_peaks(
         label, quantity = problem.joints[j], QUANTITIES[r]
         peaks.append(Peak(label, quantity, at, top.time, top.value, size, ratio, bound))
     return peaks
+
+
+def _one_sided_peaks(
+    problem: Problem, h: Array, trajectory: Trajectory, error: Array, j: int
+) -> list[Peak]:
+    """The largest acceleration while the speed of a joint grows, and while it falls."""
+    fastest = float(np.nanmax(np.abs(trajectory.turns(1)[1][:, :, j])))
+    rest = max(STANDING * fastest, 2.0 * float(error[:, 1, j].max()))
+    found = []
+    for sign, quantity, size in (
+        (1.0, QUANTITIES[1], float(problem.limits.ends(QUANTITIES[1])[1][j])),
+        (-1.0, BRAKING, float(problem.limits.deceleration[j])),
+    ):
+        top = one_sided_extreme(trajectory, error, j, sign, rest)
+        bound = max(top.most - abs(top.value), abs(top.value) - top.sure)
+        time = float(trajectory.times(top.piece, np.array(top.s)))
+        at = problem.curve.segment_of(h, Extremum(j, top.piece, 2, top.s, time, top.value))
+        ratio = _size_ratio(abs(top.value), size, bound)
+        found.append(Peak(problem.joints[j], quantity, at, time, top.value, size, ratio, bound))
+    return found
 
 
 def _nearest(
@@ -333,7 +359,7 @@ def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tu
     about_limits = verdict
     if serious and verdict is not Verdict.VIOLATED:
         verdict = Verdict.DISCONTINUOUS
-    roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)}
+    roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)} | {BRAKING: 0.5}
     stretch = max([0.0, *(p.ratio ** roots[p.quantity] for p in peaks if p.quantity in roots)])
     feasible_time, feasible_why = _rescaled(problem, h, max(1.0, stretch), peaks)
     tight_time, tight_why = _rescaled(problem, h, stretch, peaks)

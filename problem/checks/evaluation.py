@@ -15,6 +15,7 @@ from ..errors import TrajgapError
 from ..limits import USUAL, Limits, half_range
 from ..problem import Problem
 from .checker import TOLERANCE
+from .one_sided import one_sided_sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,7 +200,22 @@ def _uneven_ratios(problem: Problem, h: Array, nodal: Array | None = None) -> Ar
     with np.errstate(invalid="ignore", divide="ignore"):
         found = peaks / np.where(wanted, sides, 1.0)[:, None]
     found[np.isnan(found)] = 0.0  # 0/0 is kept
-    return np.asarray(found.max(axis=0))
+    ratios = np.asarray(found.max(axis=0))
+    if problem.limits.braking.any():
+        _put_braking(problem, h, nodal, ratios)
+    return ratios
+
+
+def _put_braking(problem: Problem, h: Array, nodal: Array | None, ratios: Array) -> None:
+    """Ratios of accelerations where deceleration has a limit of its own, vector by vector."""
+    limits, joints = problem.limits, np.flatnonzero(problem.limits.braking)
+    sizes = np.stack([limits.ends("acceleration")[1], limits.deceleration])[:, joints]
+    for k in np.flatnonzero(np.isfinite(ratios).all(axis=(1, 2))).tolist():
+        motion = problem.curve.fitted(problem.waypoints, h[k], nodal)
+        v, a = (motion.derivatives(r)[:, :, joints] for r in (1, 2))
+        parts = v.shape[1:]
+        tops = one_sided_sizes(v.reshape(len(v), -1), a.reshape(len(a), -1))
+        ratios[k, joints, 1] = (tops.reshape(2, *parts).max(axis=1) / sizes).max(axis=0)
 
 
 def _question(problem: Problem, nodal: Array | None) -> _Question:
@@ -255,9 +271,7 @@ def reachable_total(
     if not plain or problem.limits.limits_position:
         return None
     if problem.limits.uneven:
-        # The smaller size holds on both sides.
-        narrow = problem.limits.with_derivatives(problem.limits.sides.min(axis=0))
-        problem = replace(problem, limits=narrow)
+        problem = replace(problem, limits=problem.limits.narrow)
     away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
     limits = problem.limits.derivatives
     unlimited = Limits(joints=points)

@@ -232,6 +232,8 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 def _not_covered(problem: Problem) -> str | None:
     """The reason why there is no value, as far as it is known before solving."""
     limits, restless = problem.limits, _restless(problem)
+    if limits.braking.any():
+        return "deceleration has a limit of its own; this optimum is computed within one size only"
     if limits.uneven:
         return "lower and upper limits differ; this optimum is computed within equal ones only"
     higher = limits.limited[restless][:, 2:].any(axis=0)
