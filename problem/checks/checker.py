@@ -32,7 +32,8 @@ class Verdict(StrEnum):
     VIOLATED = "violated"
     """Some limit is exceeded by more than the tolerance, rounding errors included."""
     DISCONTINUOUS = "discontinuous"
-    """Position or velocity jumps at a break, or a derivative below one that is limited."""
+    """Position or velocity jumps at a break; or acceleration, if jerk or snap is limited; or jerk,
+    if snap is limited."""
     UNDECIDED = "undecided"
     """The bound on rounding errors does not separate the peak from its limit."""
 
