@@ -83,7 +83,13 @@ from .files import (
     try_writing_in as try_writing_in,
 )
 from .in_notebooks import InNotebooks as InNotebooks
-from .limits import QUANTITIES as QUANTITIES, Limits as Limits, half_range as half_range
+from .limits import (
+    BRAKING as BRAKING,
+    QUANTITIES as QUANTITIES,
+    USUAL as USUAL,
+    Limits as Limits,
+    half_range as half_range,
+)
 from .printed import (
     CHOICES as CHOICES,
     Described as Described,

@@ -18,6 +18,7 @@ from markupsafe import Markup
 from ...problem import (
     CHOICES,
     QUANTITIES,
+    USUAL,
     Array,
     Case,
     CaseError,
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
     from flask import Flask, Response
     from werkzeug.serving import BaseWSGIServer
 
+_LIMITED = QUANTITIES[:USUAL]
+"""Limits that the form asks for."""
 _TABLE = "way-points.csv"
 """Name of the file that the pasted table becomes."""
 
@@ -70,7 +73,7 @@ def case_of(fields: Mapping[str, str]) -> tuple[str, Case]:
         raise FormError(
             {"table": "paste the way-points, one per row, below a header with the joint names"}
         )
-    limits = {one: fields[one].strip() for one in QUANTITIES if fields.get(one, "").strip()}
+    limits = {one: fields[one].strip() for one in _LIMITED if fields.get(one, "").strip()}
     asked = ("position", *limits, "time")
     units = {one: fields.get(f"{one}_unit", "") for one in asked}
     identity = identity_of(fields.get("name", "").strip() or "my-paper")
@@ -103,7 +106,7 @@ def _beside(faults: Iterable[tuple[str, str]]) -> dict[str, str]:
     """The first fault of each field of the form."""
     found: dict[str, str] = {}
     for place, why in faults:
-        known = place in (*QUANTITIES, "durations", "total", "family")
+        known = place in (*_LIMITED, "durations", "total", "family")
         if place.startswith("units."):
             field = f"{place.removeprefix('units.').split('[')[0]}_unit"
         else:
@@ -125,7 +128,7 @@ def judge_motion(
     """
     if not content:
         raise FormError({"motion": "choose a file: CSV with a time column, JSON or YAML"})
-    given = {one: fields.get(f"motion_{one}", "").strip() or None for one in QUANTITIES}
+    given = {one: fields.get(f"motion_{one}", "").strip() or None for one in _LIMITED}
     if not any(given.values()):
         raise FormError(
             {"motion_velocity": "give at least one limit, which the motion is judged by"}
@@ -146,7 +149,7 @@ def judge_motion(
     except CaseError as error:
         field, why = error.faults[0]
         option = (error.file or field).removeprefix("--")
-        place = f"motion_{option if option in QUANTITIES else 'velocity'}"
+        place = f"motion_{option if option in _LIMITED else 'velocity'}"
         raise FormError({place: why}) from None
     try:
         if isinstance(read.content, Motion):
@@ -351,7 +354,7 @@ def form_page(
         fields=fields,
         faults=faults,
         example=example,
-        limits=QUANTITIES,
+        limits=_LIMITED,
         choices=CHOICES,
         units=tuple(UNITS),
         between=[str(one) for one in Interpolation],

@@ -85,6 +85,8 @@ def _slow_down(row: PrintedRow[Claim]) -> float | None:
     # Slowing down leaves the path, and may take a duration beyond its upper bound.
     if not problem.curve.homogeneous or np.isfinite(problem.duration_upper).any():
         return None
+    if problem.limits.braking.any() or loosest.limits.braking.any():
+        return None
     if (loosest.duration_lower < problem.duration_lower).any():
         return None
     wider = _farther(row, problem)

@@ -9,7 +9,7 @@ from math import exp, isfinite, log
 import numpy as np
 
 from ...nlp import Evidence, weakest
-from ...problem import QUANTITIES, extrema
+from ...problem import extrema
 from ...problem.cases import AnyClaim, TotalTimeClaim
 from ..documents import (
     Excess,
@@ -147,7 +147,7 @@ def _excesses(row: PrintedRow[AnyClaim]) -> tuple[Excess, ...]:
                 quantity=Limited(name),
                 ratio=float(abs(e.value) / limit),
             )
-            for order, name in enumerate(QUANTITIES, start=1)
+            for order, name in enumerate(problem.limits.quantities, start=1)
             for j, sizes in enumerate(problem.limits.sides[:, :, order - 1].T)
             if np.isfinite(sizes).any()
             for e in extrema(row.motion, j, order)

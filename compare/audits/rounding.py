@@ -170,6 +170,8 @@ def same_limits(one: Problem, other: Problem) -> bool:
     a, b = one.limits, other.limits
     return (
         np.array_equal(a.sides, b.sides)
+        and np.array_equal(a.ends("acceleration"), b.ends("acceleration"))
+        and np.array_equal(a.deceleration, b.deceleration)
         and np.array_equal(a.position_lower, b.position_lower)
         and np.array_equal(a.position_upper, b.position_upper)
         and np.array_equal(one.duration_lower, other.duration_lower)

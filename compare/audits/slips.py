@@ -266,7 +266,8 @@ def changes_of_motion(
     ranked: list[tuple[tuple[int, bool, int, float], Slip]] = []
     best: tuple[float, Slip] | None = None
     # How far digits that are rounded or cut off move peaks, to first order, as a share of them.
-    tops = [top for order in (1, 2, 3) for top in largest(row, order) if top.value != 0.0]
+    orders = range(1, 1 + len(row.posed().limits.quantities))
+    tops = [top for order in orders for top in largest(row, order) if top.value != 0.0]
     room = 2.0 * max((box_reach(row, top) / abs(top.value) for top in tops), default=0.0)
     least = max(1 + room, before if finding.rule != "TG201" else 0.0)
     off = int(_offs(row, problem, printed, room)[0])
@@ -301,7 +302,7 @@ def changes_of_motion(
 def _ratios(peaks: Array, limits: Array) -> Array:
     """Ratios of peaks to limits; 0 where both are 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        found: Array = np.nan_to_num(peaks / limits, nan=0.0)
+        found: Array = np.nan_to_num(peaks[..., : limits.shape[-1]] / limits, nan=0.0)
     return found
 
 
@@ -424,8 +425,8 @@ def _other_limits(
 
 
 def _peaks(problem: Problem, times: Array) -> Array:
-    """Largest absolute derivatives, shape (batch, joints, 3), rad and s."""
-    plain = Limits(velocity=1.0, acceleration=1.0, jerk=1.0, joints=len(problem.joints))
+    """Largest absolute derivatives, shape (batch, joints, orders), rad and s."""
+    plain = Limits(1.0, 1.0, 1.0, snap=1.0, joints=len(problem.joints))
     return evaluate(replace(problem, limits=plain), times).ratios
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ...problem import QUANTITIES, Case, Printed
+from ...problem import QUANTITIES, USUAL, Case, Printed
 from ...problem.cases import (
     AnyClaim,
     Claim,
@@ -196,7 +196,7 @@ _MEASURES = {
     "integral-square": "integral of the squared {one}",
 }
 """How a measure of a derivative is called."""
-DERIVATIVES = ("position", *QUANTITIES)
+DERIVATIVES = ("position", *QUANTITIES[:USUAL])
 """The position and its derivatives, by their order."""
 _STATEMENTS = {
     "within_limits": "the motion keeps its limits",

@@ -260,6 +260,12 @@ def _why(found: Certified | str) -> str | None:
     if isinstance(found, str):
         return None
     if found.verdict is None or found.verdict.proves:
+        if found.problem.relaxed:
+            left_out = " and ".join(found.problem.relaxed)
+            return (
+                f"the limits of {left_out} are left out of proofs: the lower bound holds within "
+                "them too, and no answer is claimed"
+            )
         if found.widened and found.outcome is Outcome.INTERVAL:
             return (
                 "lower and upper limits differ, and this kind of proof uses the larger size on "

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import cast
 
+from ...problem import BRAKING, Quantity
 from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
 from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
@@ -12,6 +13,9 @@ from ..documents import ShowDocument, capital, quoted, show_document
 from .input import read_case
 from .options import ProblemId, ReadingId, Source
 from .output import Answering
+
+_LIMITED = ("velocity", "acceleration", BRAKING, "jerk", "snap")
+"""Limits in the order in which they are shown."""
 
 
 def show(
@@ -76,7 +80,7 @@ def _asked(document: ShowDocument, case: Case) -> list[Block]:
         curve = one.curve().name + _ends(one)
         if one.durations.ratios not in (None, "free"):
             curve += f", {ratio_words(one.durations.ratios)}"
-        said = (_limit(one, name) for name in ("velocity", "acceleration", "jerk"))
+        said = (_limit(one, name) for name in _LIMITED)
         limits = "; ".join(each for each in said if each) or "none"
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
         slides |= any(one.linear)
@@ -112,7 +116,7 @@ def _zeros(orders: Sequence[int], values: object, where: str) -> str:
     return f", {names} 0 {where}" if names and values is None else ""
 
 
-def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]) -> str:
+def _limit(one: Statement, quantity: str) -> str:
     """A limit as printed, with the unit that it is read in; empty if there is none."""
     printed = getattr(one.limits, quantity)
     if printed is None:
@@ -120,5 +124,5 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     numbers = list(map(str, printed)) if isinstance(printed, Sequence) else [str(printed)]
     units = getattr(one.units, quantity)
     if len(numbers) == 1 and isinstance(units, tuple):
-        units = one.unit(quantity)
+        units = one.unit(cast(Quantity, quantity))
     return f"{quantity} {' '.join(with_unit(numbers, units))}"

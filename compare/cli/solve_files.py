@@ -62,11 +62,11 @@ def limits_of_table(source: str, options: LimitOptions) -> Callable[[tuple[str, 
         with naming(str(options.urdf or "limits")):
             stated, _ = stated_limits(joints, words(options.units) or ("rad",), options)
             limits = stated.two_sided
-        slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
+        slower = [joints[j] for j in np.flatnonzero(stated.joined_braking)]
         doubt = slower and (
-            f"deceleration has its own limit at joint {', '.join(slower)}; here the smaller value "
-            "limits both, so a motion that uses the larger one may "
-            "be shorter"
+            "deceleration goes with no single size of acceleration at joint "
+            f"{', '.join(slower)}; here the smallest limits both, so a motion that uses a larger "
+            "one may be shorter"
         )
         sources = ", ".join(dict.fromkeys(stated.sources.values()))
         return FileLimits(joints, limits, sources, doubt or "")

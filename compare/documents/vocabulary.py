@@ -220,9 +220,13 @@ class Limited(StrEnum):
     VELOCITY = "velocity"
     """Of a joint."""
     ACCELERATION = "acceleration"
-    """Of a joint."""
+    """Of a joint; where its deceleration has a limit of its own, while the speed grows."""
+    DECELERATION = "deceleration"
+    """Of a joint: its acceleration while the speed falls."""
     JERK = "jerk"
     """Of a joint."""
+    SNAP = "snap"
+    """Of a joint: the derivative of its jerk."""
     POSITION = "position"
     """Angle of a joint, or position of a sliding joint."""
     DURATION = "duration"
@@ -231,7 +235,14 @@ class Limited(StrEnum):
     """The durations define no curve."""
 
 
-UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
+UNITS = {
+    "position": "rad",
+    "velocity": "rad/s",
+    "acceleration": "rad/s²",
+    "deceleration": "rad/s²",
+    "jerk": "rad/s³",
+    "snap": "rad/s⁴",
+}
 """Units of what is limited, as everything is computed of joints that turn."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from ...problem import QUANTITIES, Problem, visible
+from ...problem import QUANTITIES, USUAL, Problem, visible
 from ...problem.suite import BenchmarkInstance, plain_text, suite_version
 from ..blocks import Block, Page, Prose, Section, Terms, instance_terms, suite_table, table
 from .rendering import page_text
@@ -79,7 +79,7 @@ def _verified(one: BenchmarkInstance) -> tuple[Block, ...]:
 def _limits(problem: Problem) -> Block:
     """Each joint's limits in digits, with both sides where they differ in size."""
     rows = []
-    for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True):
+    for name, power in zip(QUANTITIES[:USUAL], ("", "²", "³"), strict=True):
         sides = zip(*(x.tolist() for x in problem.limits.ends(name)), strict=True)
         sizes = [
             (f"{b:.6g}" if math.isfinite(b) else "none") if -a == b else f"{a:.6g} to {b:.6g}"

@@ -8,7 +8,7 @@ from itertools import groupby
 
 import numpy as np
 
-from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
+from ...problem import BRAKING, Case, Coupling, Problem, file_name
 from ...problem.cases import Statement
 from ..audits import RULES, CaseAudit, Study, claim_text, place, plainly
 from ..blocks import (
@@ -153,7 +153,7 @@ def _problems(study: Study) -> Grid:
 
 def _limits(problem: Problem, statement: Statement) -> str:
     parts = []
-    for name in QUANTITIES:
+    for name in problem.limits.quantities:
         if problem.limits.is_uneven(name):
             low, high = (
                 both_units(statement, name, x.tolist(), ".6g") for x in problem.limits.ends(name)
@@ -166,6 +166,9 @@ def _limits(problem: Problem, statement: Statement) -> str:
             alike &= one_unit(statement, name, statement.joints)
             every = values[:1] if alike else values
             parts.append(f"{name} {both_units(statement, name, every, '.6g')}")
+    if problem.limits.braking.any():
+        said = both_units(statement, BRAKING, problem.limits.deceleration.tolist(), ".6g")
+        parts.append(f"{BRAKING} {said}")
     if problem.limits.limits_position:
         parts.append("position")
     return "\n".join(parts) or "none"

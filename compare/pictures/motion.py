@@ -63,7 +63,7 @@ def motion_picture(
     nodal: ArrayLike | None = None,
     units: Units | None = None,
 ) -> Picture:
-    """Angle, velocity, acceleration (and jerk, if limited) over time, one row per joint.
+    """Angle, velocity, acceleration (and jerk and snap, if limited) over time, one row per joint.
 
     Limits are dashed, largest values are marked at their exact places, and stretches beyond a limit
     are red. `durations`: shape (segments,) or (joints, segments), segment durations, s, shared by
@@ -88,9 +88,11 @@ def motion_picture(
             (fit(one.curve, one.waypoints, h[j]), 0)
             for j, one in enumerate(map(problem.joint, range(joints)))
         ]
-    orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.sides[:, :, 2]).any() else [])
+    higher = np.flatnonzero(problem.limits.limited[:, 2:].any(axis=0))
+    orders = [0, 1, 2, *(3 + higher).tolist()]
+    names = ("position", *problem.limits.quantities)
     lines = [
-        [_line(problem, *rows[j], j, r, shown_in(units, problem, j, ORDERS[r])) for r in orders]
+        [_line(problem, *rows[j], j, r, shown_in(units, problem, j, names[r])) for r in orders]
         for j in range(joints)
     ]
     words = "" if check is None else f"   ·   for all t: {check.verdict}"
@@ -129,7 +131,7 @@ def _line(
         own = at, problem.waypoints[:, joint]
     return Line(
         joint=problem.joints[joint],
-        quantity=ORDERS[order],
+        quantity=("position", *limits.quantities)[order],
         linear=problem.linear[joint],
         unit=unit,
         times=times,

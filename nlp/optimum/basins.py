@@ -62,7 +62,7 @@ def _beyond_nothing(problem: Problem, h: Array) -> Array:
     span = np.ptp(problem.waypoints, axis=0)
     wanted = (problem.limits.sides == 0.0) & (span > 0)[:, None]
     peaks = problem.curve.batch_sides(problem.waypoints, h, wanted)
-    times = h.sum(axis=1)[:, None] ** np.arange(1, 4)
+    times = h.sum(axis=1)[:, None] ** np.arange(1, 1 + peaks.shape[-1])
     rates = np.where(span > 0, span, 1.0)[:, None] / times[:, None]
     worst = np.where(wanted[:, None], peaks / rates, 0.0).max(axis=(0, 2, 3))
     return np.asarray(np.where(np.isfinite(worst), worst, HOPELESS))

@@ -141,7 +141,7 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
     reasons = ["velocity"] * (n - 1)
     for k in range(n - 1):
         for j, joint in enumerate(problem.joints):
-            for order in (1, 2) if problem.limits.limited[j, 2] else (1,):
+            for order in range(1, 1 + int(problem.limits.smooth_orders[j])):
                 sides = [found.trajectory.derivative(k + i, j, order) for i in (0, 1)]
                 # A joint that stands still has no derivative: rounding has no part in that.
                 still = np.diff(problem.waypoints[k : k + 3, j]) == 0.0
@@ -154,8 +154,7 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
                 ]
                 least, most = _ratio(float(sides[0].sum()), float(sides[1][0]), *room)
                 if least > np.exp(order * low[k]) or most < np.exp(order * high[k]):
-                    quantity = "velocity" if order == 1 else "acceleration"
-                    reasons[k] = f"{quantity} of joint {joint}"
+                    reasons[k] = f"{QUANTITIES[order - 1]} of joint {joint}"
                 with np.errstate(divide="ignore"):
                     low[k] = max(low[k], float(np.log(least)) / order)
                     high[k] = min(high[k], float(np.log(most)) / order)
@@ -265,7 +264,7 @@ def refused_at_ratios(problem: Problem, h: Array) -> Solution:
     why = "rounding errors hide whether any total keeps the limits at these ratios"
     if verdict.jumps:
         jump = max(verdict.jumps, key=lambda one: (-one.order, abs(one.size)))
-        what = ("position", "velocity", "acceleration")[jump.order]
+        what = ("position", *QUANTITIES)[jump.order]
         why = f"at these ratios the {what} of joint {jump.joint} jumps, whatever the total"
     return Solution(problem, Status.NONE_FOUND, why)
 

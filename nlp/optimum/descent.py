@@ -240,7 +240,7 @@ def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array)
     total = float(before.durations.sum())
     change = (after.durations - before.durations) / total
     for i in np.flatnonzero(weights > 0):
-        twin = after.twin(before.points[i], before.signs[i])
+        twin = after.twin(before, int(i))
         if twin is None:
             return hessian
         change += weights[i] * (after.gradient[twin] - before.gradient[i])

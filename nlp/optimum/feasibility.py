@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Problem, Verdict, as_piecewise, check, shown_bound
+from ...problem import Array, Problem, Verdict, as_piecewise, check, shown_bound
 
 SURE = 1.0 + 1e-6
 """What a need must exceed to be a proof: far above the checker's tolerance and rounding."""
@@ -38,7 +38,7 @@ def _limit_zero(problem: Problem) -> str | None:
     moves = np.ptp(problem.waypoints, axis=0) > 0
     curve = problem.curve
     orders = {r for b in range(curve.segments + 1) for r, _ in curve.prescribed_at(b)}
-    for r, quantity in enumerate(QUANTITIES, start=1):
+    for r, quantity in enumerate(problem.limits.quantities, start=1):
         # A joint that must not accelerate may still glide, unless it is at rest somewhere.
         pinned = all(lower in orders for lower in range(1, r))
         for j in np.flatnonzero(moves & (problem.limits.derivatives[:, r - 1] == 0)):
@@ -59,14 +59,14 @@ def _outside_range(problem: Problem) -> str | None:
 def _prescribed_beyond_limit(problem: Problem) -> str | None:
     for b in range(problem.segments + 1):
         for order, value in problem.curve.prescribed_at(b):
-            if order > 3:
+            if order > len(problem.limits.quantities):
                 continue
             each = np.broadcast_to(np.asarray(value, dtype=np.float64), len(problem.joints))
             below, above = problem.limits.sides[:, :, order - 1]
             over = np.abs(each) > np.where(each > 0.0, above, below)
             if over.any():
                 joint = problem.joints[int(np.argmax(over))]
-                quantity = QUANTITIES[order - 1]
+                quantity = problem.limits.quantities[order - 1]
                 return f"the {quantity} prescribed at break {b} exceeds the limit of joint {joint}"
     return None
 
@@ -97,7 +97,7 @@ def _spans(problem: Problem) -> Iterator[tuple[int, Array, Array, Callable[[int]
     yield 1, np.diff(q, axis=0), high, lambda w: f"between way-points {w + 1} and {w + 2}"
     for last, end in enumerate(problem.curve.ends):
         still = {order for order, value in end if value == 0.0}
-        for order in (2, 3):
+        for order in range(2, 1 + len(problem.limits.quantities)):
             if not (still >= set(range(1, order)) and _smooth(problem, order - 1)):
                 continue
             if last:
@@ -118,7 +118,10 @@ def _spans(problem: Problem) -> Iterator[tuple[int, Array, Array, Callable[[int]
 
 
 def _too_little_time(problem: Problem) -> str | None:
-    """|Δq| ≤ Vt; ≤ At²/2 from a start at rest; ≤ Jt³/6 if its acceleration is 0 too. Ends alike."""
+    """|Δq| ≤ Vt; |Δq| ≤ Lt^r/r! from a start at rest up to order r − 1, L the limit of order r.
+
+    Ends alike.
+    """
     for order, way, room, words in _spans(problem):
         distance = np.abs(way)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -129,7 +132,7 @@ def _too_little_time(problem: Problem) -> str | None:
             w, j = (int(x) for x in np.unravel_index(late.argmax(), late.shape))
             return (
                 f"joint {problem.joints[j]} needs at least {shown_bound(needed[w, j], 'lower')} s "
-                f"{words(w)} at its {QUANTITIES[order - 1]} limit; "
+                f"{words(w)} at its {problem.limits.quantities[order - 1]} limit; "
                 f"the duration bounds allow {room[w]:.6g} s"
             )
     return None
@@ -179,17 +182,17 @@ def apart(problem: Problem) -> bool:
 def forbidden_jumps(problem: Problem) -> list[tuple[int, int, int]]:
     """Jumps that the declaration allows and the limits forbid: (break, order, joint) of each.
 
-    Those of joints that move: of velocity, and of acceleration where jerk is limited.
+    Those of joints that move, up to the order of `Limits.smooth_orders`.
     """
     curve, moving = as_piecewise(problem.curve), np.ptp(problem.waypoints, axis=0) > 0
+    highest = problem.limits.smooth_orders
     return [
         (b, order, int(j))
         for b in range(1, 0 if curve is None else curve.segments)
-        for order in (1, 2)
+        for order in range(1, int(highest.max()) + 1)
         if curve is not None and order > curve.smooth_order(b)
         if order not in dict(curve.prescribed_at(b))
-        for j in np.flatnonzero(moving)
-        if order == 1 or problem.limits.limited[j, 2]
+        for j in np.flatnonzero(moving & (highest >= order))
     ]
 
 

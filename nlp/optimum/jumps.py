@@ -1,6 +1,6 @@
 """Curves that may jump where the limits forbid it: the smoother curve, or ratios without a jump.
 
-A motion that passes is smooth in velocity, and in acceleration where jerk is limited. Among the
+A motion that passes is smooth up to the order of `Limits.smooth_orders`. Among the
 curves of a declaration with less continuity, and derivatives that are free, those that pass are
 therefore curves of the declaration with more of it. Where too little is free for that, the jumps
 are equations for the ratios of the durations, which the NLP states.
@@ -11,8 +11,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...problem import Array, Problem, TrajgapError, as_piecewise, check, fit
+from ...problem import QUANTITIES, Array, Problem, TrajgapError, as_piecewise, check, fit
 from .decided import kept
 from .program import free_values
 from .solution import Solution, Status
@@ -26,7 +27,7 @@ def smoother(problem: Problem) -> Problem | None:
     curve = as_piecewise(problem.curve)
     if curve is None or not curve.free:
         return None
-    order = 2 if _jerk_limited(problem).any() else 1
+    order = int(_orders(problem).max(initial=1))
     raised = tuple(max(c, order) for c in curve.continuity)
     if raised == curve.continuity:
         return None
@@ -39,20 +40,18 @@ def smoother(problem: Problem) -> Problem | None:
     return replace(problem, curve=declared)
 
 
-def _jerk_limited(problem: Problem) -> Array:
-    """Joints that move and whose jerk is limited."""
+def _orders(problem: Problem) -> NDArray[np.int64]:
+    """Orders up to which joints that move must not jump."""
     moving = np.ptp(problem.waypoints, axis=0) > 0
-    return np.asarray(problem.limits.limited[:, 2] & moving)
+    return np.asarray(problem.limits.smooth_orders[moving])
 
 
 def same_motions(problem: Problem) -> bool:
     """Whether every motion that passes is one of the smoother problem's.
 
-    A joint without a limit of its jerk may jump in acceleration, and be faster for it.
+    A joint with fewer limits may jump in a derivative, and be faster for it.
     """
-    limited = _jerk_limited(problem)
-    still = np.ptp(problem.waypoints, axis=0) == 0
-    return bool((limited | still).all()) or not limited.any()
+    return len(set(_orders(problem).tolist())) <= 1
 
 
 def carried_over(problem: Problem, values: Array, durations: Array, to: Problem) -> Array | None:
@@ -84,6 +83,7 @@ def as_answer(problem: Problem, found: Solution) -> Solution | None:
     answer = replace(found, problem=problem, nodal=values[0], check=verdict)
     if same_motions(problem):
         return answer
-    note = "joints without a jerk limit are kept as smooth as the others"
+    highest = QUANTITIES[int(_orders(problem).max())]
+    note = f"joints without a {highest} limit are kept as smooth as the others"
     why = note if found.why is None else f"{found.why}; {note}"
     return replace(answer, status=Status.FEASIBLE, why=why)

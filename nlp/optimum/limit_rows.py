@@ -7,8 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, CurveError, Extremum, Problem, fit, peak_gradients
-from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory
+from ...problem import (
+    BRAKING,
+    QUANTITIES,
+    Array,
+    CurveError,
+    Extremum,
+    Problem,
+    fit,
+    peak_gradients,
+)
+from ...problem.checks import intervals
+from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory, valued
 
 Indices = NDArray[np.int64]
 
@@ -27,7 +37,7 @@ and a descent keeps its rows to 1e-12."""
 class ExactRows:
     """Limits to first order about one motion, in log durations and free derivatives.
 
-    A stretch by c divides v, a, j by c, c², c³, so a derivative's excess is log(|value|/limit)/r:
+    A stretch by c divides a derivative of order r by cʳ, so its excess is log(|value|/limit)/r:
     its gradient is −1 along a stretch, whatever the order and the units. A position's excess is
     counted in spans of the joint's way-points; that of a derivative whose side is 0, in shares of
     the joint's mean rate.
@@ -45,6 +55,8 @@ class ExactRows:
         Which side of its range a value is at.
     stretched : ndarray of bool, shape (rows,)
         Whether a stretch of all durations repairs the excess.
+    braking : ndarray of bool, shape (rows,)
+        Whether it is one of deceleration, where that has a limit of its own.
     """
 
     durations: Array
@@ -53,6 +65,7 @@ class ExactRows:
     points: tuple[Extremum, ...]
     signs: Array
     stretched: NDArray[np.bool_]
+    braking: NDArray[np.bool_]
 
     @property
     def worst(self) -> float:
@@ -66,14 +79,19 @@ class ExactRows:
         excess = np.where(self.stretched, self.excess - z, self.excess)
         return replace(self, durations=self.durations * c, excess=excess, points=points)
 
-    def twin(self, e: Extremum, sign: float) -> int | None:
+    def quantity(self, row: int) -> str:
+        """What a row limits."""
+        return BRAKING if self.braking[row] else ("position", *QUANTITIES)[self.points[row].order]
+
+    def twin(self, before: ExactRows, row: int) -> int | None:
         """The row whose extremum continues one of another motion: the nearest of its segment."""
+        e = before.points[row]
         found = [
             (abs(other.s - e.s), k)
             for k, other in enumerate(self.points)
             if (other.joint, other.order, other.segment) == (e.joint, e.order, e.segment)
             and (other.s in (0.0, 1.0)) == (e.s in (0.0, 1.0))
-            and self.signs[k] == sign
+            and (self.signs[k], self.braking[k]) == (before.signs[row], before.braking[row])
         ]
         away, k = min(found, default=(np.inf, 0))
         return k if away <= MOVED else None
@@ -118,17 +136,17 @@ def near_limits(
     Their places, then values (rad/sᵒʳᵈᵉʳ), sides, excesses and sizes, the last two as in
     `excesses`.
     """
-    curve, limits = problem.curve, problem.limits
+    curve, limits, apart = problem.curve, problem.limits, problem.limits.braking
     inner = range(1, trajectory.durations.size)
     smooth = np.array([curve.smooth_order(b) for b in inner], dtype=np.int64)
     degrees = np.array(trajectory.degrees)
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found = [np.zeros((5, 0))]
-    for r in (1, 2, 3, 0):
+    for r in (*range(1, 1 + limits.sides.shape[2]), 0):
         low, high = (
             limits.sides[..., r - 1] if r else (-limits.position_lower, limits.position_upper)
         )
-        wanted = np.isfinite(low) | np.isfinite(high)
+        wanted = (np.isfinite(low) | np.isfinite(high)) & ~(apart & (r == 2))
         if not wanted.any():
             continue
         places, values = trajectory.turns(r)
@@ -149,6 +167,49 @@ def near_limits(
     return where, whole[4, at], side[at], excess[at], size[at]
 
 
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """Accelerations of joints whose deceleration has a limit of its own, as far as near it.
+
+    One row for each stretch on which speed, acceleration and jerk keep their signs: at the end
+    where the acceleration is larger.
+    """
+
+    places: Places
+    value: Array
+    braking: NDArray[np.bool_]
+    ratio: Array
+    turning: NDArray[np.bool_]
+    """Whether the place is a root of the speed inside a piece, and moves with it."""
+
+    @classmethod
+    def of(cls, problem: Problem, trajectory: Trajectory) -> _Parts:
+        """Those above `NEAR` of their limit; the first of equal neighbours counts."""
+        limits, found = problem.limits, [np.zeros((7, 0))]
+        for j in np.flatnonzero(limits.braking).tolist():
+            v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
+            low, high, _, growth = intervals(v, a)
+            ends = np.stack([low, high])
+            values = valued(a[:, None, None], ends)
+            last = (np.abs(values[1]) > np.abs(values[0]))[None].astype(np.int64)
+            place, value = (np.take_along_axis(of, last, 0)[0] for of in (ends, values))
+            size = np.where(growth > 0.0, limits.ends("acceleration")[1][j], limits.deceleration[j])
+            ratio = np.abs(value) / size
+            i, k = np.nonzero((low < high) & (growth != 0.0) & (ratio > NEAR))
+            s, falls = place[i, k], growth[i, k] < 0.0
+            slow = np.abs(valued(v[:, k], s)) <= STILL * np.abs(v[:, k]).sum(axis=0)
+            turning = slow & (s > 0.0) & (s < 1.0)
+            rows = np.array([np.full(i.size, j), k, s, value[i, k], falls, ratio[i, k], turning])
+            # What ends one stretch or piece and begins the next is one row of each kind.
+            at = np.round(trajectory.times(k, s) / trajectory.total_time, 9)
+            _, first = np.unique(np.stack([at, falls]), axis=1, return_index=True)
+            found.append(rows[:, np.sort(first)])
+        j, k, s, value, falls, ratio, turning = np.hstack(found)
+        order = np.full(j.size, 2)
+        places = Places(j.astype(np.int64), k.astype(np.int64), order, s)
+        return cls(places, value, falls > 0.0, ratio, turning > 0.0)
+
+
 def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactRows:
     """Excesses near or above 0 and their gradients; one infinite excess where there is no curve.
 
@@ -158,33 +219,56 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
     try:
         trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         at, value, side, excess, size = near_limits(problem, trajectory, NEAR)
-        columns = (
-            at.joint,
-            at.segment,
-            at.order,
-            at.s,
-            trajectory.times(at.segment, at.s),
-            value,
-        )
-        points = [Extremum(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
+        parts = _Parts.of(problem, trajectory)
+        points = _extrema(trajectory, at, value) + _extrema(trajectory, parts.places, parts.value)
+        side = np.append(side, np.sign(parts.value))
+        excess = np.append(excess, np.log(parts.ratio) / 2.0)
+        size = np.append(size, 2.0 * np.abs(parts.value))
         slope = np.zeros((0, h.size + free))
         if points:
             found = peak_gradients(problem, h, points, nodal)
             slope = found.durations * h
+            if parts.turning.any():
+                slope[len(at.s) :][parts.turning] -= (
+                    _moved(problem, h, trajectory, parts, nodal) * h
+                )
             if free:
                 slope = np.hstack([slope, _by_nodal(problem, points, found.nodal)])
     except CurveError:
         nothing, none = np.zeros((1, h.size + free)), np.zeros(1, dtype=bool)
-        return ExactRows(h, np.array([np.inf]), nothing, (), np.ones(1), none)
-    limit = problem.limits.sides[(side > 0).astype(int), at.joint, np.maximum(at.order, 1) - 1]
-    stretched = (at.order > 0) & (limit > 0.0)
-    return ExactRows(h, excess, slope * (side / size)[:, None], tuple(points), side, stretched)
+        return ExactRows(h, np.array([np.inf]), nothing, (), np.ones(1), none, none)
+    own = side[: len(at.s)]
+    limit = problem.limits.sides[(own > 0).astype(int), at.joint, np.maximum(at.order, 1) - 1]
+    stretched = np.append((at.order > 0) & (limit > 0.0), np.ones(parts.ratio.size, dtype=bool))
+    braking = np.append(np.zeros(len(at.s), dtype=bool), parts.braking)
+    slope = slope * (side / size)[:, None]
+    return ExactRows(h, excess, slope, tuple(points), side, stretched, braking)
+
+
+def _extrema(trajectory: Trajectory, at: Places, value: Array) -> list[Extremum]:
+    columns = at.joint, at.segment, at.order, at.s, trajectory.times(at.segment, at.s), value
+    return [Extremum(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
+
+
+def _moved(
+    problem: Problem, h: Array, trajectory: Trajectory, parts: _Parts, nodal: Array | None
+) -> Array:
+    """How accelerations at roots of the speed change since those move: by jerk/a times the speed's.
+
+    The root moves in time by −dv/a.
+    """
+    points = _extrema(trajectory, parts.places, parts.value)
+    turning = np.flatnonzero(parts.turning)
+    roots = [replace(points[i], order=1, value=0.0) for i in turning]
+    jerks = [trajectory.values(e.segment, e.joint, 3, np.array(e.s)) for e in roots]
+    share = np.array(jerks) / parts.value[turning]
+    return np.asarray(share[:, None] * peak_gradients(problem, h, roots, nodal).durations)
 
 
 def _by_nodal(problem: Problem, points: list[Extremum], slope: Array) -> Array:
     """Gradients by the free derivatives of all joints, (points, free · joints), in their limits."""
     own = np.eye(len(problem.joints))[[e.joint for e in points]]
     units, widest = np.ones((MAX_COEFFICIENTS, len(problem.joints))), problem.limits.widest.T
-    units[1:4] = np.where(np.isfinite(widest), widest, 1.0)
+    units[1 : 1 + len(widest)] = np.where(np.isfinite(widest), widest, 1.0)
     orders = [order for _, order in problem.piecewise.free_derivatives]
     return np.asarray(slope[:, :, None] * own[:, None] * units[orders]).reshape(len(points), -1)

@@ -42,7 +42,7 @@ class Active:
     joint : str or None
         Joint label; None for a bound on a segment duration.
     quantity : str
-        "velocity", "acceleration", "jerk", "position", "duration" (lower or upper bound).
+        One of `Limits.quantities`, "deceleration", "position", "duration" (lower or upper bound).
     segment : int
         Segment, from 0.
     time : float or None
@@ -164,7 +164,7 @@ def kkt(
     walls = np.zeros((2, problem.segments))
     np.add.at(walls, ((found.sides > 0).astype(int), found.segments), of_bounds)
     limits = [
-        (rows.points[i], float(rows.signs[i]), w)
+        (rows.points[i], rows.quantity(i), float(rows.signs[i]), w)
         for i, w in zip(found.near, of_limits, strict=True)
         if w > 0
     ]
@@ -213,7 +213,8 @@ def sparse_kkt(
         # What both segments share belongs to the first, as in `kkt`.
         k -= int(s == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r)
         e = Extremum(int(joint[i]), k, r, s, time, float(values[i]))
-        active.append((e, float(sign[i]), float(weights[i])))
+        quantity = ("position", *QUANTITIES)[r]
+        active.append((e, quantity, float(sign[i]), float(weights[i])))
     return _report(problem, durations, stationary, excess, weights, active, walls)
 
 
@@ -223,13 +224,13 @@ def _report(
     stationary: Array,
     excess: Array,
     weights: Array,
-    limits: list[tuple[Extremum, float, float]],
+    limits: list[tuple[Extremum, str, float, float]],
     walls: Array,
 ) -> KKT:
     """The conditions of limits and bounds, and those that are active.
 
     From the gradient of the Lagrangian of log T, excess and weights of the limits, those that are
-    reached with their sides and weights, and the weights of lower and upper bounds of durations.
+    reached with their quantities, sides and weights, and the weights of bounds of durations.
     """
     total, least = float(durations.sum()), ACTIVE / problem.segments
     with np.errstate(divide="ignore"):
@@ -240,7 +241,7 @@ def _report(
     parts = (stationary, weights * excess, walls * gaps)
     residual = max(float(np.abs(part).max(initial=0.0)) for part in parts)
     active, span = [], np.ptp(problem.waypoints, axis=0)
-    for e, sign, weight in limits:
+    for e, quantity, sign, weight in limits:
         if weight <= least:
             continue
         if e.order == 0:
@@ -251,7 +252,6 @@ def _report(
         else:
             w = weight * total / e.order
             gain = float(problem.limits.sides[int(sign > 0), e.joint, e.order - 1] > 0.0)
-        quantity = ("position", *QUANTITIES)[e.order]
         segment = problem.curve.segment_of(durations, e)
         label = problem.joints[e.joint], quantity, segment, e.time
         active.append(Active(*label, w, -MORE * gain * w))
@@ -318,7 +318,7 @@ def _conditions(
 ) -> tuple[Array, Array, Array] | None:
     """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
     h = rows.durations
-    twins = [rows.twin(first.points[i], first.signs[i]) for i in active]
+    twins = [rows.twin(first, i) for i in active]
     if None in twins:
         return None
     at = np.array(twins, dtype=np.int64)

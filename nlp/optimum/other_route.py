@@ -31,7 +31,7 @@ def with_other_route(solution: Solution) -> Solution:
         With `other_total`, if the other route knows the curve and ends within the limits.
     """
     problem, h = solution.problem, solution.vector
-    if h is None or solution.infimum is not None:
+    if h is None or solution.infimum is not None or problem.limits.braking.any():
         return solution
     start = np.clip(LONGER * h, problem.duration_lower, problem.duration_upper)
     floor = np.minimum(made_up(problem, FLOOR), 0.5 * h)

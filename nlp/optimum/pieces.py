@@ -75,14 +75,16 @@ class Sides:
 
     Attributes
     ----------
-    scale : ndarray, shape (joints, 3)
+    scale : ndarray, shape (joints, orders)
         The larger side; inf if nothing is limited.
-    low, high : ndarray, shape (joints, 3)
+    low, high : ndarray, shape (joints, orders)
         Both sides in shares of it: −1 and 1 where they are equal.
     """
 
     def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
-        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
+        sides = problem.limits.sides
+        self.orders = np.arange(1, 1 + sides.shape[2])
+        below, above = sides * unit**self.orders / angle[:, None]
         positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
         scale = np.maximum(*positive)
         # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
@@ -226,7 +228,7 @@ class Clock:
         q, t = (np.empty(len(self._t), dtype=object) for _ in range(2))
         for m, coefficients in enumerate(self._t):
             q[m], t[m] = ca.MX(ca.DM(self._scaled[k, m, j])), coefficients[k.tolist()]
-        every, rate = [q, *numerators(q, t, 4)], t[1:] * np.arange(1, t.size)
+        every, rate = [q, *numerators(q, t, 5)], t[1:] * np.arange(1, t.size)
 
         def speed(s: Any) -> Any:
             return _evaluated(rate, s)

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Interpolant, Problem, as_piecewise
+from ...problem import Array, Interpolant, Problem, as_piecewise
 from ...problem.curves import ConditionKind, Conditions, Places, Trajectory, derivative_rows
 from .feasibility import forbidden_jumps
 from .pieces import Clock, Indices, Rows, Sides, ca, clocked_bend, left_derivatives, pieces_of
@@ -120,7 +120,7 @@ class Program:
 
     def __str__(self) -> str:
         p, rows, states = self.problem, self.ends.s.size, int((self.left.order > 0).sum())
-        scales = zip(QUANTITIES, self.sides.scale.T, strict=True)
+        scales = zip(p.limits.quantities, self.sides.scale.T, strict=True)
         limited = ["position"] if p.limits.limits_position else []
         limited += [quantity for quantity, scale in scales if scale.min() < np.inf]
         variables = f"{self.segments} durations"
@@ -231,7 +231,7 @@ class Program:
             given = dict(enumerate(map(declared.prescribed_at, range(last + 1))))
         orders = {b: {order for order, _ in at} for b, at in given.items() if at}
         found: list[tuple[int, int, int, float]] = []
-        for r in (1, 2, 3):
+        for r in self.sides.orders.tolist():
             joints = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1])).tolist()
             right = (self.degrees > r) & ~self.pieces.smooth(r)
             left = (self.degrees >= r) & (declared is None)
@@ -305,7 +305,7 @@ class Program:
     def rooms(self, places: Places, sign: Array) -> Array:
         """Limits of rows: derivatives in shares of the larger side, positions in angles."""
         limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
-        r = np.clip(places.order, 1, 3) - 1
+        r = self._column(places)
         at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
         side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
         return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
@@ -326,14 +326,18 @@ class Program:
         found = [low, np.maximum(self.problem.duration_upper / self.unit, low)]
         for i, sign in enumerate((-1.0, 1.0)):
             rooms = self.rooms(self.left, np.full(self.left.s.size, sign)) * self._sizes(self.left)
-            edge = np.where(self.left.order <= 3, rooms, sign * np.inf)
+            edge = np.where(self.left.order <= self.sides.orders[-1], rooms, sign * np.inf)
             edge = np.where(np.isnan(self._given), edge, self._given)
             found[i] = np.append(found[i], edge)
         return found[0], found[1]
 
+    def _column(self, places: Places) -> Indices:
+        """Columns of the limits of derivatives; those of orders without one are not used."""
+        return np.asarray(np.clip(places.order, 1, self.sides.orders[-1]) - 1)
+
     def _sizes(self, places: Places) -> Array:
         """What limits are shares of: the larger side of a derivative; 1 of positions."""
-        size = self.sides.scale[places.joint, np.clip(places.order, 1, 3) - 1]
+        size = self.sides.scale[places.joint, self._column(places)]
         return np.where((places.order == 0) | np.isinf(size), 1.0, size)
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:

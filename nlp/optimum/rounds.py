@@ -123,7 +123,7 @@ def grid_rows(program: Program) -> Rows:
     found = [
         (j, k, r, i / (d - r + 2), sign, 0.0)
         for k, d in enumerate(program.degrees.tolist())
-        for r in range(min(4, d))
+        for r in range(min(1 + program.sides.orders.size, d))
         for i in range(1, d - r + 2)  # more than its turning points
         for j in range(program.joints)
         for sign in (1.0, -1.0)

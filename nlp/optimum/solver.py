@@ -152,12 +152,33 @@ def _at_ratios(problem: Problem) -> Solution:
 
 def _solve(problem: Problem, ask: _Ask) -> Solution:
     """`solve` where no elementary argument decides."""
+    many = problem.curve.free or problem.segments > DENSE
+    if problem.limits.braking.any() and (many or (forbidden_jumps(problem) and not apart(problem))):
+        return _in_narrow_limits(problem, ask)
     smooth = smoother(problem)
     if smooth is not None:
         found = as_answer(problem, _solve_smoother(problem, smooth, ask))
         if found is not None:
             return found
     return _solve_itself(problem, ask)
+
+
+NARROW = (
+    "searched within the smaller of acceleration and deceleration: a motion that uses the larger "
+    "one may be shorter"
+)
+"""Beside an answer of the NLP, whose rows know no sign of the speed."""
+
+
+def _in_narrow_limits(problem: Problem, ask: _Ask) -> Solution:
+    """The answer within `Limits.narrow`, which keeps all limits."""
+    found = _solve(replace(problem, limits=problem.limits.narrow), replace(ask, proved=False))
+    why = NARROW if found.why is None else f"{found.why}; {NARROW}"
+    status = found.status if found.status is Status.FAILED else Status.NONE_FOUND
+    if not found.found:
+        return replace(found, problem=problem, status=status, why=why)
+    verdict = check(problem, found.durations, found.nodal)
+    return replace(found, problem=problem, status=Status.FEASIBLE, why=why, check=verdict)
 
 
 def _solve_smoother(problem: Problem, smooth: Problem, ask: _Ask) -> Solution:
@@ -214,7 +235,12 @@ def _continued(problem: Problem, motion: Local, route: Route) -> Solution:
 
 
 def _moves_throughout(problem: Problem) -> bool:
-    """Whether rounds of the NLP apply: each segment moves, and something is limited."""
+    """Whether rounds of the NLP apply: each segment moves, and something is limited.
+
+    They know no sign of the speed, which tells a limit of deceleration from one of acceleration.
+    """
+    if problem.limits.braking.any():
+        return False
     curve, sides = as_piecewise(problem.curve), problem.limits.sides
     moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
     limited = (np.isfinite(sides) & (sides > 0)).any()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
+from ...problem.checks import one_sided_sizes
 from ...problem.curves import Trajectory
 
 DENSE = 24
@@ -75,7 +76,12 @@ def slowed(problem: Problem, nodal: Array, factor: float) -> Array:
 
 @lru_cache(maxsize=16)
 def stretching(problem: Problem) -> Problem:
-    """The problem without the limits that no stretch repairs: sides of 0."""
+    """The problem without the limits that no stretch repairs, sides of 0, and in narrow ones.
+
+    Where deceleration has a limit of its own, the smaller size on both sides is quicker to judge.
+    """
+    if problem.limits.braking.any():
+        problem = replace(problem, limits=problem.limits.narrow)
     sides = problem.limits.sides
     if (sides > 0).all():
         return problem
@@ -97,7 +103,7 @@ def way_start(problem: Problem) -> Array:
     Not by what the worst of all exceeds: among many segments one is always far worse than most.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0))
-    velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
+    velocity, acceleration = problem.limits.sides.min(axis=0).T[:2]  # the smaller sides
     with np.errstate(divide="ignore", invalid="ignore"):
         fast = np.where(way > 0, WAY.dwell * way / velocity, 0.0).max(axis=1)
         turn = np.sqrt(np.where(way > 0, WAY.turn * way / acceleration, 0.0)).max(axis=1)
@@ -120,7 +126,7 @@ def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
     """By how much each segment would have to be stretched, were it alone."""
     worst = np.zeros(len(trajectory.durations))
     below, above = problem.limits.sides
-    for r in (1, 2, 3):
+    for r in range(1, 1 + below.shape[1]):
         wanted = np.isfinite(below[:, r - 1]) | np.isfinite(above[:, r - 1])
         if not wanted.any():
             continue
@@ -130,6 +136,10 @@ def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
             ratio = np.where(wanted & (limit > 0.0), np.abs(values) / limit, 0.0)
         ratio = np.where(np.isnan(places), 0.0, ratio)
         worst = np.maximum(worst, ratio.max(axis=(0, 2)) ** (1.0 / r))
+    for j in np.flatnonzero(problem.limits.braking):
+        v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
+        own = problem.limits.ends("acceleration")[1][j], problem.limits.deceleration[j]
+        worst = np.maximum(worst, np.sqrt(one_sided_sizes(v, a).T / own).max(axis=1))
     return worst
 
 

@@ -152,7 +152,7 @@ def certify(
         Curves of the declared kind, or any curve: all C1 motions through the way-points with
         |v| ≤ V and |a| ≤ A and the declared end velocities. Limits of jerk and position only make
         motions slower: the lower bound over any curve holds with them, and no upper bound is
-        claimed.
+        claimed. So it is, whatever the curve, where `ExactProblem.relaxed` names limits.
     gap : float
         Relative width of the interval to reach.
     seconds : float, optional
@@ -213,7 +213,7 @@ def certify(
     if boxes is None:
         boxes = MINUTE * certifier.allowance(exact) if seconds is None else math.inf
     clock = RunClock(math.inf if seconds is None else seconds)
-    kept = KeptProofs(False if resume is not None else cache)
+    kept = KeptProofs(False if resume is not None or exact.relaxed else cache)
     with ProofCrew(workers, executor) as crew:
         earlier = kept.taken(exact, subject, gap, seed, clock, crew)
         if earlier is not None:
@@ -225,6 +225,6 @@ def certify(
             request = replace(request, resume=before)
         if known is not None:
             request = replace(request, known=np.asarray(known, dtype=np.float64))
-        found = judged(certifier.run(exact, request), clock, before, crew)
+        found = judged(certifier.run(exact, request).one_sided, clock, before, crew)
     kept.keep(found, gap, seed)
     return found

@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ...problem import Curve, Interpolant, Problem, TrajgapError, replace_file
+from ...problem import BRAKING, Curve, Interpolant, Problem, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...problem.suite import list_instances
 from ...verify import (
@@ -108,7 +108,12 @@ def problem_seal(problem: Problem) -> str:
     -------
     str
     """
-    return seal(problem_document(exact_problem(problem)))
+    document = problem_document(exact_problem(problem))
+    if problem.limits.unproved:
+        own = vars(problem.limits)
+        every = ("acceleration", BRAKING, "snap")
+        document["left_out"] = {name: str(own[name].tolist()) for name in every}
+    return seal(document)
 
 
 def _other(curve: Curve) -> dict[str, Any]:

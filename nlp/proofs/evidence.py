@@ -60,7 +60,7 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Proved
     """
     if why_too_large(problem) is not None:
         return None
-    document = shipped(problem, subject)
+    document = None if problem.relaxed else shipped(problem, subject)
     if document is None and subject is Subject.DECLARED and covered(problem) is None:
         if not instant(problem):
             return None
@@ -89,10 +89,12 @@ def interval_of(
     Returns
     -------
     ProvedInterval or None
-        None if it is about another problem, proves nothing, or leaves an interval wider than
-        1 %.
+        None if it is about another problem, or one without some of its limits, proves nothing, or
+        leaves an interval wider than 1 %.
     """
-    if why_too_large(problem) is not None or not fits(document, problem, subject):
+    if problem.relaxed or why_too_large(problem) is not None:
+        return None
+    if not fits(document, problem, subject):
         return None
     return proved_again(document, verdict)
 
@@ -148,21 +150,32 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
         Solved once more from the certificate's durations if these are shorter; at these durations
         if the answer lies below the bound by no more than the tolerance of a descent. It is
         *optimal* if the bound is within a millionth of its total. Unchanged if nothing is proved,
-        or if the answer lies farther below the bound: then one of the two is wrong.
+        or if the answer lies farther below the bound: then one of the two is wrong. Where limits
+        were left out of the proof, `why` says so.
     """
     if found is None or found.infeasible:
         return solution
+    left_out = solution.problem.limits.unproved
+    if left_out and solution.best < math.inf:
+        said = "the lower bound is proved without the limits of " + " and ".join(left_out)
+        why = said if solution.why is None else f"{solution.why}; {said}"
+        return _bounded(replace(solution, why=why), found)
     proved = found.durations
     if proved is not None and not solution.best <= float(sum(proved)) * (1 + TOLERANCE):
         start = np.array([float(h) for h in proved])
         again = solve(solution.problem, initial=start, known=start)
         solution = again if again.best < solution.best else solution
+    return _bounded(solution, found)
+
+
+def _bounded(solution: Solution, found: ProvedInterval) -> Solution:
+    """The answer with a lower bound that is proved."""
     lower = float(found.lower)
     if Fraction(lower) > found.lower:
         lower = math.nextafter(lower, -math.inf)
     near = solution.infimum is None and lower * (1.0 - KEPT) <= solution.best < lower
-    if near and proved is not None:
-        solution = _proved_answer(solution, proved)
+    if near and found.durations is not None:
+        solution = _proved_answer(solution, found.durations)
     if not lower <= solution.best < math.inf:
         return solution
     shortest = solution.infimum is None and lower >= solution.best * (1.0 - GAP)

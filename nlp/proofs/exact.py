@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...problem import (
+    USUAL,
     Curve,
     Interpolant,
     LimitPair,
@@ -31,6 +32,8 @@ MOVING = (
 )
 """Why there is no proof of a curve at fixed ratios, of a B-spline, or in units of a proof for cubic
 and quintic splines; and what still holds."""
+_DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+"""Quantities whose limits certificates state, and of which ends may have a value."""
 _PI = Scale(Fraction(1), 1).bounds
 """Rational bounds of π, the same as for printed numbers."""
 
@@ -133,6 +136,9 @@ class ExactProblem:
     chord : bool
         Whether the ratios are those of chord lengths that are not rational numbers; then without
         ``shares``.
+    relaxed : tuple of str
+        Quantities whose limits are left out (`Limits.unproved`). The least total without them is a
+        lower bound on the one with them, and no answer to this problem is one within them.
     """
 
     name: str
@@ -149,6 +155,7 @@ class ExactProblem:
     prescribed: Prescribed | None = None
     shares: tuple[Fraction, ...] | None = None
     chord: bool = False
+    relaxed: tuple[str, ...] = ()
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -208,6 +215,7 @@ class ExactProblem:
             own,
             self.shares,
             self.chord,
+            self.relaxed,
         )
 
 
@@ -247,14 +255,14 @@ def exact_problem(problem: Problem) -> ExactProblem:
     below, above = limits.sides
     pairs = [
         ((j, r + 1), (point(float(below[j, r])), point(float(above[j, r]))))
-        for j, r in np.argwhere(below != above).tolist()
+        for j, r in np.argwhere((below != above)[:, :USUAL]).tolist()
     ]
     return ExactProblem(
         problem.name,
         problem.curve,
         problem.joints,
         tuple(tuple(Fraction(float(q)) for q in row) for row in problem.waypoints),
-        tuple(tuple(point(float(x)) for x in row) for row in limits.widest),
+        tuple(tuple(point(float(x)) for x in row) for row in limits.widest[:, :USUAL]),
         tuple(point(float(x)) for x in limits.position_lower),
         tuple(point(float(x)) for x in limits.position_upper),
         tuple(Fraction(float(x)) for x in problem.duration_lower),
@@ -262,6 +270,7 @@ def exact_problem(problem: Problem) -> ExactProblem:
         unit=_joined_units(["m" if slides else "rad" for slides in problem.linear]),
         pairs=tuple(pairs),
         shares=exact_shares(problem.ratios),
+        relaxed=limits.unproved,
     )
 
 
@@ -306,10 +315,9 @@ def printed_problem(statement: Statement) -> ExactProblem:
         return list(given) if isinstance(given, tuple | list) else [given] * count
 
     limits, total = statement.limits, len(statement.labels)
-    derivatives: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
     columns: list[list[Real | None]] = []
     pairs: dict[tuple[int, int], Pair] = {}
-    for order, name in enumerate(derivatives, 1):
+    for order, name in enumerate(_DERIVATIVES, 1):
         column = each(getattr(limits, name), total)
         for place, j in enumerate(statement.joints):
             if not isinstance(column[j], LimitPair):
@@ -321,12 +329,17 @@ def printed_problem(statement: Statement) -> ExactProblem:
                 pairs[place, order] = below, most
             column[j] = column[j].upper
         joined = _joined(pairs)
-        columns.append(
-            [
-                joined[place, order] if (place, order) in joined else own(column[j], name, j)
-                for place, j in enumerate(statement.joints)
-            ]
-        )
+        found = [
+            joined[place, order] if (place, order) in joined else own(column[j], name, j)
+            for place, j in enumerate(statement.joints)
+        ]
+        if order == 2:
+            # An acceleration lies within the larger limit, whatever the sign of the speed.
+            braking = each(limits.deceleration, total)
+            apart = [own(braking[j], name, j) for j in statement.joints]
+            both = zip(found, apart, strict=True)
+            found = [a if a is None or d is None else max(a, d, key=_high) for a, d in both]
+        columns.append(found)
     low, high = (
         [own(each(getattr(limits, name), total)[j], "position", j) for j in statement.joints]
         for name in ("position_lower", "position_upper")
@@ -351,6 +364,7 @@ def printed_problem(statement: Statement) -> ExactProblem:
         prescribed,
         printed_shares(statement, problem),
         statement.durations.ratios == "chord" and len(statement.joints) > 1,
+        problem.limits.unproved,
     )
 
 
@@ -392,9 +406,8 @@ def _derivative(number: Printed, order: int, statement: Statement, joint: int) -
     """A derivative at an end in the unit of its joint's way-points, and s."""
     if number.fraction == 0:
         return Fraction(0)
-    quantities: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
     base = scale(str(statement.unit("position", joint)))
-    other = scale(str(statement.unit(quantities[order - 1], joint)))
+    other = scale(str(statement.unit(_DERIVATIVES[order - 1], joint)))
     if other.pi != base.pi:
         raise TrajgapError(
             "certify: a derivative at an end is in another unit of angle than the way-points, "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Protocol
@@ -150,6 +150,15 @@ class Certified:
     left_out: str | None = None
     widened: bool = False
     kept: bool = False
+
+    @property
+    def one_sided(self) -> Certified:
+        """Without the answer, where limits were left out that it need not keep."""
+        if not self.problem.relaxed or self.durations is None:
+            return self
+        proved = self.outcome is Outcome.INFEASIBLE
+        outcome = self.outcome if proved else Outcome.INTERVAL
+        return replace(self, outcome=outcome, upper=None, durations=None, speeds=None)
 
     @property
     def gap(self) -> float:

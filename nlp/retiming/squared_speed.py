@@ -87,7 +87,7 @@ def bound_along(
     ----------
     loosest, tightest : Limits
         The first may allow more than is meant, and bounds the time from below; the second may allow
-        less, and bounds it from above. If they limit jerk, there is no bound from above.
+        less, and bounds it from above. If they limit jerk or snap, there is no bound from above.
     radius : pair of ndarray, shape (segments, joints), optional
         By how much q′ and q″ of the paths that are meant may differ from this one, as
         `largest_derivatives` gives it of the difference: both bounds hold for all of them. 0 by
@@ -96,7 +96,7 @@ def bound_along(
         Into which the path is cut, about.
     """
     path = trajectory.path
-    jerky = bool(np.isfinite(tightest.widest[:, 2]).any())
+    jerky = bool(np.isfinite(tightest.widest[:, 2:]).any())
     without = [
         one if one.uneven else Limits(one.velocity, one.acceleration) for one in (loosest, tightest)
     ]

@@ -99,9 +99,10 @@ def _options(strategy: str) -> dict[str, Any]:
 
 
 def jerk_limited_path(trajectory: Trajectory, limits: Limits) -> bool:
-    """Whether a path can be timed so: equal limits of jerk, and a motion that does not jump."""
+    """Whether a path can be timed so: equal limits of jerk, none of snap, and no jump."""
     return bool(
         not limits.uneven
+        and limits.quantities[-1] == "jerk"
         and np.isfinite(limits.jerk).any()
         and (limits.derivatives > 0).all()
         and trajectory.polynomial_in_time

@@ -189,12 +189,16 @@ def not_applicable(trajectory: Trajectory, limits: Limits) -> str | None:
     moving = _moving(trajectory)
     if not moving.any():
         return "nothing moves"
+    if limits.braking.any():
+        return "deceleration has a limit of its own, and paths are re-timed within one size only"
     if limits.uneven:
         return (
             "the two sides of a limit differ in size, and paths are re-timed only within equal ones"
         )
-    if np.isfinite(limits.jerk[moving]).any():
-        return "jerk is limited, but TOPPRA handles velocity and acceleration limits only"
+    higher = limits.limited[moving][:, 2:].any(axis=0)
+    if higher.any():
+        highest = limits.quantities[2 + int(np.argmax(higher))]
+        return f"{highest} is limited, but TOPPRA handles velocity and acceleration limits only"
     if np.isinf(limits.acceleration[moving]).all():
         return "no acceleration is limited, so the speed along the path could jump"
     for name, values in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 
+from ..limits import BRAKING
 from ..printed import Printed, Quantity, is_linear, spelling_hint
 from ..robots import Chain, JointKind
 from .claim import (
@@ -196,6 +197,11 @@ def _check_profile(
         return
     # Without this limit the highest derivative would jump: another profile.
     needed = "acceleration" if claim.profile == "trapezoidal" else "jerk"
+    for key in (BRAKING, "snap"):
+        beside = [one for one in every if getattr(one.limits, key) is not None]
+        if beside:
+            why = f"takes no limits.{key}, which is one of curves; state {key} in the claim instead"
+            faults.add(f"{at}.profile", f'"{claim.profile}" {why}{beside[0].selected}')
     for statement in every:
         given = getattr(statement.limits, needed)
         each = given if isinstance(given, tuple) else (given,) * len(statement.labels)

@@ -9,6 +9,7 @@ from ..printed import (
     AccelerationUnits,
     JerkUnits,
     PositionUnits,
+    SnapUnits,
     Strict,
     TimeUnit,
     UnitOrEach,
@@ -27,7 +28,13 @@ class Units(Strict):
     velocity: VelocityUnits = None
     acceleration: AccelerationUnits = None
     jerk: JerkUnits = None
+    snap: SnapUnits = None
     time: TimeUnit = None
+
+    @property
+    def deceleration(self) -> UnitOrEach:
+        """That of acceleration."""
+        return self.acceleration
 
 
 def unit_of(units: UnitOrEach, joint: int) -> str | None:

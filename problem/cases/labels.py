@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
 from ..characters import listed
-from ..limits import QUANTITIES
+from ..limits import QUANTITIES, USUAL
 from ..printed import CHOICES, is_linear, shown_unit
 from ..problem import Coupling
 from .declaration import InterpolantBlock, Values
@@ -17,6 +17,7 @@ _UNITS = {
     "velocity": "velocities",
     "acceleration": "accelerations",
     "jerk": "jerks",
+    "snap": "snaps",
     "time": "times",
 }
 """What a unit is of, as a reader calls it."""
@@ -34,7 +35,9 @@ _SHOWN = {
 _LIMITS = {
     "velocity": "velocity limits",
     "acceleration": "acceleration limits",
+    "deceleration": "deceleration limits",
     "jerk": "jerk limits",
+    "snap": "snap limits",
     "position_lower": "lower position limits",
     "position_upper": "upper position limits",
 }
@@ -186,7 +189,7 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
 def _end_words(end: str, orders: tuple[int, ...], values: Values | None) -> Iterator[str]:
     for order, value in zip(orders, values or ("0",) * len(orders), strict=True):
         each = " ".join(map(str, value)) if isinstance(value, tuple) else value
-        name = QUANTITIES[order - 1] if order <= len(QUANTITIES) else f"derivative {order}"
+        name = QUANTITIES[order - 1] if order <= USUAL else f"derivative {order}"
         yield f"{end} {name} {each}"
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..characters import listed
 from ..errors import CaseError, TrajgapError
 from ..files import read_text
-from ..limits import QUANTITIES, Limits
+from ..limits import BRAKING, ORDERS, QUANTITIES, USUAL, Limits
 from ..printed import CHOICES, MINUS_SIGNS, Printed, Quantity, check_unit, is_linear, scale
 from .declaration import FAMILIES
 from .faults import Faults
@@ -39,6 +39,10 @@ class FileLimits:
     """Name of the file."""
     doubt: str = ""
     """Doubt about the limits, such as sides that they leave out, in a sentence; empty if none."""
+
+
+_MEASURED = (*ORDERS, "time")
+"""Quantities that a new case asks for; a limit of snap is rare, and added by hand."""
 
 
 def scaffold(
@@ -240,12 +244,12 @@ def _units(
     faults: Faults, units: Mapping[str, str], limits: Iterable[str]
 ) -> dict[str, str | tuple[str, ...]]:
     for key in units:
-        if key not in CHOICES:
-            faults.add(f"units.{key}", f"no such quantity; known: {', '.join(CHOICES)}")
+        if key not in _MEASURED:
+            faults.add(f"units.{key}", f"no such quantity; known: {', '.join(_MEASURED)}")
     checked: dict[str, str | tuple[str, ...]] = {}
     needed = {"position", *limits, "time"}
     # A unit without a limit serves a printed peak.
-    for key in (one for one in CHOICES if one in needed or one in units):
+    for key in (one for one in _MEASURED if one in needed or one in units):
         quantity = cast(Quantity, key)
         unit = units.get(key, "s" if key == "time" else None)
         if unit is None:
@@ -284,7 +288,7 @@ def _template() -> Template:
 
 def _unit_lines(units: Mapping[str, str | tuple[str, ...]]) -> list[str]:
     lines = []
-    for key, choices in CHOICES.items():
+    for key, choices in ((one, CHOICES[one]) for one in _MEASURED):
         unit = units.get(key)
         if isinstance(unit, tuple):
             lines.append(f"{key} = [{', '.join(map(_quoted, unit))}]")
@@ -297,7 +301,7 @@ def _unit_lines(units: Mapping[str, str | tuple[str, ...]]) -> list[str]:
 
 def _limit_lines(limits: Mapping[str, Sequence[str]], stated: Mapping[str, str]) -> list[str]:
     lines = []
-    for key in QUANTITIES:
+    for key in QUANTITIES[:USUAL]:
         each = [str(Printed(text).decimal) for text in limits.get(key, ())]
         shown = each[0] if len(each) == 1 else f"[{', '.join(each)}]"
         shown = shown if each else stated.get(key, "")
@@ -323,18 +327,21 @@ def _stated(
 
     found: dict[str, str] = {}
     added: dict[str, str | tuple[str, ...]] = {}
-    for order, key in enumerate(QUANTITIES):
-        below, above = limits.sides[:, :, order]
-        if np.isinf(limits.sides[:, :, order]).all():
+    for order, key in enumerate(QUANTITIES[:USUAL]):
+        low, high = limits.ends(key)
+        if np.isinf([low, high]).all():
             continue
         per = "/s" if order == 0 else f"/s^{order + 1}"
         si = tuple(("m" if is_linear(one) else "rad") + per for one in each(position))
         unit = units.get(key, si if len(set(si)) > 1 else si[0])
         added[key] = unit
-        ends = zip(scaled(-below, unit), scaled(above, unit), strict=True)
+        ends = zip(scaled(low, unit), scaled(high, unit), strict=True)
         found[key] = _one_or_each(
             [repr(high) if low == -high else f"[{low!r}, {high!r}]" for low, high in ends]
         )
+    if limits.braking.any():
+        slower = scaled(limits.deceleration, added["acceleration"])
+        found[BRAKING] = _one_or_each([repr(x) for x in slower])
     for key in ("position_lower", "position_upper"):
         values = getattr(limits, key)
         if np.isfinite(values).any():

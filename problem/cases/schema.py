@@ -175,13 +175,17 @@ class Waypoints(Strict):
 class LimitsBlock(Strict):
     """Limits as printed: one for all joints or one per joint; absent or inf means none.
 
-    One per joint may be a pair: the least value, 0 or less, and the largest, 0 or more.
+    One per joint may be a pair: the least value, 0 or less, and the largest, 0 or more. That of
+    deceleration holds while the speed falls, in the unit of acceleration, whose own limit then
+    holds while the speed grows.
     """
 
     where: str = ""
     velocity: OneOrEachSized = None
     acceleration: OneOrEachSized = None
+    deceleration: OneOrEachUpper = None
     jerk: OneOrEachSized = None
+    snap: OneOrEachSized = None
     position_lower: OneOrEachLowerPosition = None
     position_upper: OneOrEachUpperPosition = None
 

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..curves import MOST_OPEN, Curve, Derivatives, as_piecewise, counts_in_words
 from ..duration_ratios import ratio_word
 from ..errors import CaseError, RatiosError, TrajgapError
-from ..limits import QUANTITIES, Limits
+from ..limits import BRAKING, QUANTITIES, Limits
 from ..printed import CHOICES, LimitPair, Measured, Printed, Quantity, is_linear, to_si
 from ..problem import Coupling, Problem
 from .declaration import InterpolantBlock, Values, declare
@@ -27,7 +27,9 @@ Data = tuple[Curve, Limits, Array, Array]
 _LIMITED: dict[str, Quantity] = {
     "velocity": "velocity",
     "acceleration": "acceleration",
+    BRAKING: "acceleration",
     "jerk": "jerk",
+    "snap": "snap",
     "position_lower": "position",
     "position_upper": "position",
 }
@@ -373,9 +375,14 @@ class Statement:
             velocity=self._sizes("velocity", digits),
             acceleration=self._sizes("acceleration", digits),
             jerk=self._sizes("jerk", digits),
+            snap=self._sizes("snap", digits),
             position_lower=position_lower,
             position_upper=position_upper,
         )
+        try:
+            limits = limits.with_deceleration(self._limit(BRAKING, "acceleration", digits))
+        except TrajgapError as error:
+            raise self.fail("limits.deceleration", str(error).partition(": ")[2]) from None
         return curve, limits, lower, upper
 
     def _sizes(self, quantity: Quantity, digits: Digits) -> Array:

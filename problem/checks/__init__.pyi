@@ -13,3 +13,8 @@ from .evaluation import (
     reachable_total as reachable_total,
 )
 from .jumps import Jump as Jump
+from .one_sided import (
+    intervals as intervals,
+    one_sided_extreme as one_sided_extreme,
+    one_sided_sizes as one_sided_sizes,
+)

@@ -13,12 +13,15 @@ from ..arrays import Array
 from ..curves import Enclosed, Extremum, Furthest, Trajectory, as_durations, furthest
 from ..errors import CurveError, SingularError
 from ..in_notebooks import InNotebooks
-from ..limits import ORDERS, QUANTITIES, half_range
+from ..limits import BRAKING, ORDERS, QUANTITIES, half_range
 from ..problem import Problem
 from .jumps import Jump, jumps_of
+from .one_sided import one_sided_extreme
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
+STANDING = 1e-9
+"""Share of a joint's largest speed below which it stands, and neither speeds up nor brakes."""
 
 
 class Verdict(StrEnum):
@@ -29,7 +32,8 @@ class Verdict(StrEnum):
     VIOLATED = "violated"
     """Some limit is exceeded by more than the tolerance, rounding errors included."""
     DISCONTINUOUS = "discontinuous"
-    """Position or velocity jumps at a break (or acceleration, if jerk is limited)."""
+    """Position or velocity jumps at a break; or acceleration, if jerk or snap is limited; or jerk,
+    if snap is limited."""
     UNDECIDED = "undecided"
     """The bound on rounding errors does not separate the peak from its limit."""
 
@@ -41,8 +45,8 @@ class Peak:
     joint: str | None
     """Joint label; None for a segment duration."""
     quantity: str
-    """"position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations
-    define none."""
+    """"position", "velocity", "acceleration", "deceleration", "jerk", "snap", "duration"; or
+    "curve" if the durations define none."""
     segment: int
     """Segment, from 0."""
     time: float | None
@@ -81,11 +85,12 @@ class Check(InNotebooks):
     peaks: tuple[Peak, ...]
     """One per joint and quantity."""
     jumps: tuple[Jump, ...]
-    """Discontinuities of position, velocity and acceleration."""
+    """Discontinuities of position, velocity and acceleration, and of jerk if snap is limited."""
     total_time: float
     """Sum of the durations, s."""
     stretch: float
-    """c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight."""
+    """c* = max (|v|/V, √(|a|/A), ∛(|j|/J), ∜(|s|/S)): stretching all durations by it makes them
+    tight."""
     feasible_time: float | None
     feasible_why: str | None
     tight_time: float | None
@@ -136,6 +141,9 @@ def _derivative_peaks(
     orders = np.flatnonzero(limited.any(axis=(0, 1))).tolist()
     reach = {r: furthest(trajectory, r + 1, error[:, r + 1]) for r in orders}
     for j, r in np.argwhere(limited.any(axis=0)).tolist():
+        if r == 1 and problem.limits.braking[j]:
+            peaks += _one_sided_peaks(problem, h, trajectory, error, j)
+            continue
         top, size, ratio, bound = _nearest(
             trajectory, reach[r], j, sides[:, j, r].tolist(), error[:, r + 1]
         )
@@ -143,6 +151,26 @@ def _derivative_peaks(
         label, quantity = problem.joints[j], QUANTITIES[r]
         peaks.append(Peak(label, quantity, at, top.time, top.value, size, ratio, bound))
     return peaks
+
+
+def _one_sided_peaks(
+    problem: Problem, h: Array, trajectory: Trajectory, error: Array, j: int
+) -> list[Peak]:
+    """The largest acceleration while the speed of a joint grows, and while it falls."""
+    fastest = float(np.nanmax(np.abs(trajectory.turns(1)[1][:, :, j])))
+    rest = max(STANDING * fastest, 2.0 * float(error[:, 1, j].max()))
+    found = []
+    for sign, quantity, size in (
+        (1.0, QUANTITIES[1], float(problem.limits.ends(QUANTITIES[1])[1][j])),
+        (-1.0, BRAKING, float(problem.limits.deceleration[j])),
+    ):
+        top = one_sided_extreme(trajectory, error, j, sign, rest)
+        bound = max(top.most - abs(top.value), abs(top.value) - top.sure)
+        time = float(trajectory.times(top.piece, np.array(top.s)))
+        at = problem.curve.segment_of(h, Extremum(j, top.piece, 2, top.s, time, top.value))
+        ratio = _size_ratio(abs(top.value), size, bound)
+        found.append(Peak(problem.joints[j], quantity, at, time, top.value, size, ratio, bound))
+    return found
 
 
 def _nearest(
@@ -319,10 +347,8 @@ def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tu
         *_duration_peaks(problem, h),
     ]
     jumps, hidden = jumps_of(problem, trajectory, error)
-    jerk_limited = problem.limits.limited[:, 2]
-    serious = [
-        jump for jump in jumps if jump.order < 2 or jerk_limited[problem.joints.index(jump.joint)]
-    ]
+    forbidden = problem.limits.smooth_orders
+    serious = [jump for jump in jumps if jump.order <= forbidden[problem.joints.index(jump.joint)]]
     verdict = Verdict.PASS
     for p in peaks:
         slack = _slack(problem, p)
@@ -334,7 +360,7 @@ def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tu
     about_limits = verdict
     if serious and verdict is not Verdict.VIOLATED:
         verdict = Verdict.DISCONTINUOUS
-    roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)}
+    roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)} | {BRAKING: 0.5}
     stretch = max([0.0, *(p.ratio ** roots[p.quantity] for p in peaks if p.quantity in roots)])
     feasible_time, feasible_why = _rescaled(problem, h, max(1.0, stretch), peaks)
     tight_time, tight_why = _rescaled(problem, h, stretch, peaks)

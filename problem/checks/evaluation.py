@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import Array
 from ..curves import Asked, Extremum, PeakGradients, as_durations
 from ..errors import TrajgapError
-from ..limits import Limits, half_range
+from ..limits import USUAL, Limits, half_range
 from ..problem import Problem
 from .checker import TOLERANCE
+from .one_sided import one_sided_sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +23,9 @@ class Evaluation:
     """True peak ratios of a batch of duration vectors."""
 
     ratios: Array
-    """Shape (batch, joints, 3); max over t of |v|/V, |a|/A, |j|/J, each by the limit on its side; 0
-    where there is no limit, inf if a duration is not positive and finite."""
+    """Shape (batch, joints, orders); max over t of |v|/V, |a|/A, |j|/J and, if it is limited, of
+    snap, each by the limit on its side; 0 where there is no limit, inf if a duration is not
+    positive and finite."""
     _reach: Callable[[], Array] | None = field(default=None, repr=False)
 
     @property
@@ -48,8 +50,15 @@ class Evaluation:
         top = ratios[:, 0].copy()
         for j in range(1, ratios.shape[1]):  # far quicker than max() along a middle axis
             np.maximum(top, ratios[:, j], out=top)
-        stretch: Array = np.maximum(top[:, 0], np.maximum(np.sqrt(top[:, 1]), np.cbrt(top[:, 2])))
-        return stretch
+        return _stretch(top)
+
+
+def _stretch(ratios: Array) -> Array:
+    """The largest of the r-th roots of ratios, the last axis by order from 1."""
+    found = np.maximum(ratios[..., 0], np.maximum(np.sqrt(ratios[..., 1]), np.cbrt(ratios[..., 2])))
+    for r in range(USUAL, ratios.shape[-1]):
+        found = np.maximum(found, ratios[..., r] ** (1.0 / (r + 1)))
+    return np.asarray(found)
 
 
 _Question = tuple[Array, Array, Asked, bool]
@@ -184,14 +193,29 @@ def _reached(problem: Problem, asked: _PositionsAsked, durations: Array) -> Arra
 
 
 def _uneven_ratios(problem: Problem, h: Array, nodal: Array | None = None) -> Array:
-    """The larger ratio of both sides, shape (batch, joints, 3)."""
+    """The larger ratio of both sides, shape (batch, joints, orders)."""
     sides = problem.limits.sides
     wanted = np.isfinite(sides)
     peaks = problem.curve.batch_sides(problem.waypoints, h, wanted, nodal)
     with np.errstate(invalid="ignore", divide="ignore"):
         found = peaks / np.where(wanted, sides, 1.0)[:, None]
     found[np.isnan(found)] = 0.0  # 0/0 is kept
-    return np.asarray(found.max(axis=0))
+    ratios = np.asarray(found.max(axis=0))
+    if problem.limits.braking.any():
+        _put_braking(problem, h, nodal, ratios)
+    return ratios
+
+
+def _put_braking(problem: Problem, h: Array, nodal: Array | None, ratios: Array) -> None:
+    """Ratios of accelerations where deceleration has a limit of its own, vector by vector."""
+    limits, joints = problem.limits, np.flatnonzero(problem.limits.braking)
+    sizes = np.stack([limits.ends("acceleration")[1], limits.deceleration])[:, joints]
+    for k in np.flatnonzero(np.isfinite(ratios).all(axis=(1, 2))).tolist():
+        motion = problem.curve.fitted(problem.waypoints, h[k], nodal)
+        v, a = (motion.derivatives(r)[:, :, joints] for r in (1, 2))
+        parts = v.shape[1:]
+        tops = one_sided_sizes(v.reshape(len(v), -1), a.reshape(len(a), -1))
+        ratios[k, joints, 1] = (tops.reshape(2, *parts).max(axis=1) / sizes).max(axis=0)
 
 
 def _question(problem: Problem, nodal: Array | None) -> _Question:
@@ -247,29 +271,26 @@ def reachable_total(
     if not plain or problem.limits.limits_position:
         return None
     if problem.limits.uneven:
-        # The smaller size holds on both sides.
-        narrow = problem.limits.with_derivatives(problem.limits.sides.min(axis=0))
-        problem = replace(problem, limits=narrow)
+        problem = replace(problem, limits=problem.limits.narrow)
     away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
+    limits = problem.limits.derivatives
     unlimited = Limits(joints=points)
     cardinal = replace(
         problem,
         waypoints=np.eye(points),
-        limits=unlimited.with_derivatives(np.ones((points, 3))),
+        limits=unlimited.with_derivatives(np.ones((points, limits.shape[1]))),
         joints=(),
         linear=(),
     )
     unit = evaluate(cardinal, h[None]).ratios[0]
     own = evaluate(problem, h[None]).ratios[0]
-    limits = problem.limits.derivatives
     moves = away.T @ unit
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = own + np.where(np.isfinite(limits), moves / limits, 0.0)
     if not np.isfinite(ratios).all():
         return None
     slack = 1.0 + TOLERANCE
-    roots = [ratios[:, 0], np.sqrt(ratios[:, 1]), np.cbrt(ratios[:, 2])]
-    stretch = max(1.0, float(np.max(roots)) * slack)
+    stretch = max(1.0, float(_stretch(ratios).max()) * slack)
     stretched = h * stretch
     inside = (stretched * slack >= problem.duration_lower).all()
     if not inside or (stretched > problem.duration_upper * slack).any():

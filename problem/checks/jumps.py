@@ -17,7 +17,7 @@ class Jump:
 
     joint: str
     order: int
-    """0 position, 1 velocity, 2 acceleration."""
+    """0 position, 1 velocity, 2 acceleration; 3 jerk where snap is limited."""
     break_index: int
     """Break between two pieces of the trajectory, from 1."""
     time: float
@@ -27,11 +27,11 @@ class Jump:
 
 
 def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[list[Jump], bool]:
-    """Steps of position, velocity and acceleration that rounding errors do not explain.
+    """Steps of derivatives, as in `Jump.order`, that rounding errors do not explain.
 
     Parameters
     ----------
-    error : ndarray, shape (pieces, 4, joints)
+    error : ndarray, shape (pieces, 5, joints)
         Bound on the error of each derivative on a piece.
 
     Returns
@@ -40,7 +40,7 @@ def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[li
         The second says whether the bound is what keeps some step from being a jump.
     """
     found, hidden = [], False
-    for order in range(3):
+    for order in range(problem.limits.sides.shape[2]):
         left, right, scale = trajectory.steps(order)
         size, room = right - left, 1e-9 * scale
         steps = np.argwhere(np.abs(size) > room)

@@ -41,8 +41,8 @@ class Enclosed:
     Attributes
     ----------
     trajectory : Trajectory
-    error : ndarray, shape (pieces, 4, joints)
-        Bound on the error of any extremum of derivative 0 to 3 on a piece.
+    error : ndarray, shape (pieces, 5, joints)
+        Bound on the error of any extremum of derivative 0 to 4 on a piece.
     closer : callable, optional
         Makes the same with a closer bound, at some cost; None if there is none.
     """
@@ -200,14 +200,14 @@ class Curve(ABC):
             rad.
         durations : ndarray, shape (batch, segments)
             s; vectors that define no curve give infinite peaks.
-        wanted : ndarray of bool, shape (2, joints, 3)
+        wanted : ndarray of bool, shape (2, joints, orders)
             Which peaks are needed, below 0 and above; the others are returned as 0.
         nodal : ndarray, shape (free, joints), optional
 
         Returns
         -------
-        ndarray, shape (2, batch, joints, 3)
-            Sizes, rad/s, rad/s², rad/s³: of the furthest value below 0, and above; 0 for none.
+        ndarray, shape (2, batch, joints, orders)
+            Sizes, rad/sᵒʳᵈᵉʳ: of the furthest value below 0, and above; 0 for none.
         """
         values = self.motion_values(waypoints, nodal)
         asked = Asked(np.logical_or(*wanted), (-1.0, 1.0))
@@ -382,7 +382,7 @@ def as_batch(curve: Curve, durations: ArrayLike) -> Array:
 
 
 def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
-    """Bound on the error of each derivative's extrema, shape (pieces, 4, joints).
+    """Bound on the error of each derivative's extrema, shape (pieces, 5, joints).
 
     Coefficient errors, plus the rounding of Horner's scheme, plus that of the place of the
     extremum, where the next derivative vanishes to rounding.
@@ -391,8 +391,8 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     top, size = len(powers), 32 * np.finfo(np.float64).eps * np.abs(powers)
     error = coefficient_error[:, :top].transpose(1, 0, 2)
     # Orders lead: what is asked of all pieces is one order at a time.
-    own = np.tensordot(PERM[:top, :4].T, error, axes=1)
-    own += np.tensordot(PERM[:top, :4].T + PERM[:top, 1:5].T, size, axes=1)
+    own = np.tensordot(PERM[:top, :5].T, error, axes=1)
+    own += np.tensordot(PERM[:top, :5].T + PERM[:top, 1:6].T, size, axes=1)
     # One power after another: those of a table of exponents differ in the last bit.
-    own /= np.stack([trajectory.durations**r for r in range(4)])[:, :, None]
+    own /= np.stack([trajectory.durations**r for r in range(5)])[:, :, None]
     return own.transpose(1, 0, 2)

@@ -24,7 +24,7 @@ class Extremum:
         Indices from 0; the segment is a piece of the trajectory, and a segment between
         way-points except where a curve has its knots elsewhere.
     order : int
-        Derivative: 0 position, 1 velocity, 2 acceleration, 3 jerk.
+        Derivative: 0 position, 1 velocity, 2 acceleration, 3 jerk, 4 snap.
     s : float
         Place in its own parameter, 0..1.
     time : float
@@ -75,7 +75,7 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     joint : int
         Index from 0.
     order : int
-        0 position, 1 velocity, 2 acceleration, 3 jerk.
+        0 position, 1 velocity, 2 acceleration, 3 jerk, 4 snap.
 
     Returns
     -------

@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from ..limits import QUANTITIES
 from .kind import (
     Asked,
     Curve,
@@ -36,11 +35,11 @@ def shape_of(curve: Curve, waypoints: Array) -> Shape:
 
 
 def _segment_sides(curve: Curve, waypoints: Array) -> Array:
-    """How far q and its derivatives go below 0 and above, shape (segments, 2, 4, joints)."""
+    """How far q and its derivatives go below 0 and above, shape (segments, 2, 5, joints)."""
     form = shape_of(curve, waypoints - waypoints[0])
-    found = np.zeros((curve.segments, 2, 4, waypoints.shape[1]))
+    found = np.zeros((curve.segments, 2, 5, waypoints.shape[1]))
     a = form.scaled[:, : form.degree + 1].transpose(1, 0, 2)[:, :, None]
-    for r in range(4):
+    for r in range(5):
         part = derived(a, r) / form.share[:, None, None] ** r
         for side, sign in enumerate((-1.0, 1.0)):
             np.maximum.at(found[:, side, r], form.segment, tops(part, sign))
@@ -48,12 +47,12 @@ def _segment_sides(curve: Curve, waypoints: Array) -> Array:
 
 
 def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) -> Array:
-    """Shortest durations of a stretched curve within limits of v, a and j, without a solver.
+    """Shortest durations of a stretched curve within limits of derivatives, without a solver.
 
-    With t linear in a segment, v = q′/l, a = q″/l², j = q‴/l³, and no duration enters another
-    segment: the total is least when each is, l = max over joints of
-    max(max|q′|/V, √(max|q″|/A), ∛(max|q‴|/J)). Jumps of the velocity between segments are not
-    limited by V, A, J inside the segments, and are ignored here.
+    With t linear in a segment, v = q′/l, a = q″/l² and so on, and no duration enters another
+    segment: the total is least when each is, l = max over joints and orders r of the r-th root of
+    max|q⁽ʳ⁾|/limit. Jumps of the velocity between segments are not
+    limited by limits inside the segments, and are ignored here.
 
     Parameters
     ----------
@@ -61,7 +60,7 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
         One whose segments are stretched.
     waypoints : array_like, shape (way-points, joints)
         rad.
-    limits : array_like, shape (joints, 3)
+    limits : array_like, shape (joints, orders)
         Like `Limits.derivatives`; infinite for no limit.
 
     Returns
@@ -70,13 +69,14 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
         s; 0 for a segment in which nothing that is limited moves, infinite if a joint with
         limit 0 moves.
     """
-    # Largest |q′|, |q″|, |q‴| of every segment when its duration is 1 s.
-    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, 1:]
-    peaks = sides.max(axis=1).transpose(0, 2, 1)
     bound = np.asarray(limits, dtype=np.float64)
+    orders = np.arange(1, 1 + bound.shape[1])
+    # Largest |q⁽ʳ⁾| of every segment when its duration is 1 s.
+    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, orders]
+    peaks = sides.max(axis=1).transpose(0, 2, 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = np.where(peaks > 0.0, peaks / bound, 0.0)
-    return np.asarray((ratios ** (1.0 / np.arange(1, len(QUANTITIES) + 1))).max(axis=(1, 2)))
+    return np.asarray((ratios ** (1.0 / orders)).max(axis=(1, 2)))
 
 
 class StretchedCurve(Curve):

@@ -102,8 +102,8 @@ class ClockedTrajectory(Trajectory):
 
     @cached_property
     def numerators(self) -> list[Array]:
-        """N_1 to N_4, each of shape (powers, pieces, joints)."""
-        found = numerators(self.derivatives(0), self._time, 4)
+        """N_1 to N_5, each of shape (powers, pieces, joints)."""
+        found = numerators(self.derivatives(0), self._time, 5)
         return [np.ascontiguousarray(a, dtype=np.float64) for a in found]
 
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
@@ -179,7 +179,7 @@ class ClockedTrajectory(Trajectory):
         return np.asarray(np.polynomial.polynomial.polysub(found, value * speed))
 
     def steps(self, order: int) -> tuple[Array, Array, Array]:
-        """Derivative, up to order 2, before and after each inner break, and its terms' size."""
+        """Derivative, up to order 3, before and after each inner break, and its terms' size."""
         if order == 0:
             return super().steps(0)
         q, speed = self.derivatives(0), derived(self._time, 1)
@@ -232,7 +232,7 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
 
 
 def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array:
-    """Bound on the error of each derivative's extrema, shape (pieces, 4, joints).
+    """Bound on the error of each derivative's extrema, shape (pieces, 5, joints).
 
     First order in the coefficients' errors and in the rounding of the numerators, doubled; the
     division by t′²ʳ⁻¹ adds (2r − 1) δt′/t′ of the largest value.
@@ -243,11 +243,11 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
     dt = clock_error.T[:, :, None] + epsilon * t
     least = _least_speed(derived(found.clock.T, 1))[0][:, None]
     slow = derived(dt, 1).sum(axis=0) / least
-    bounds = np.empty((len(found.clock), 4, found.joints))
+    bounds = np.empty((len(found.clock), 5, found.joints))
     bounds[:, 0] = 2.0 * dq.sum(axis=0)
-    terms = [a.sum(axis=0) for a in numerators(q, t, 4, 1)]
-    moved = [a.sum(axis=0) for a in numerators(q + dq, t + dt, 4, 1)]
-    for r in range(1, 4):
+    terms = [a.sum(axis=0) for a in numerators(q, t, 5, 1)]
+    moved = [a.sum(axis=0) for a in numerators(q + dq, t + dt, 5, 1)]
+    for r in range(1, 5):
         sway = moved[r - 1] - terms[r - 1] + epsilon * terms[r - 1]
         power = least ** (2 * r - 1)
         # The place of an extremum is where the next numerator vanishes to rounding.

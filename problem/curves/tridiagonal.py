@@ -99,7 +99,9 @@ def tridiagonal_fit(ends: tuple[Derivatives, Derivatives], q: Array, h: Array) -
     none, both, larger = np.zeros(h.size), w[:-1] + w[1:], np.maximum(w[:-1], w[1:])
     sizes = h * np.array([none, a0, 2.0 * a0 + a1 + 3.0 * slopes, a0 + a1 + 2.0 * slopes])
     errors = h * np.array([none, rounding, rounding, rounding])
-    moved = np.array([h * both / 6.0, larger, 2.0 * per * (both + larger), 6.0 * per**2 * both])
+    moved = np.array(
+        [h * both / 6.0, larger, 2.0 * per * (both + larger), 6.0 * per**2 * both, none]
+    )
     degrees = (3,) * h.size
     bounds = value_errors(Trajectory(h, sizes.T[:, :, None], degrees), errors.T[:, :, None])
     error = _MORE * (bounds + moved.T[:, :, None]) * speed

@@ -6,16 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..characters import listed
 from ..errors import TrajgapError
-from ..limits import ORDERS as ORDERS, Limits
+from ..limits import BRAKING as BRAKING, ORDERS as ORDERS, Limits
 from .motion import LARGEST
 
-BRAKING = "deceleration"
-"""Acceleration while the speed falls, where it has a limit of its own."""
 GIVEN = "given"
 """Said as the source of a limit that came as a number and not from a file."""
 
@@ -52,12 +50,15 @@ class JointLimits:
     @classmethod
     def of(cls, limits: Limits, joints: Sequence[str]) -> JointLimits:
         """The limits of a `Problem` for these joints: it states all of them, inf for none."""
-        below, above = limits.sides
-        lower = np.column_stack([limits.position_lower, -below])
-        upper = np.column_stack([limits.position_upper, above])
-        free = np.full(len(joints), np.inf)
+        if limits.quantities[-1] != ORDERS[-1]:
+            raise TrajgapError(
+                "limits.snap: motions from elsewhere are not judged by it; leave it out"
+            )
+        ends = [limits.ends(quantity) for quantity in limits.quantities]
+        lower = np.column_stack([limits.position_lower, *(low for low, _ in ends)])
+        upper = np.column_stack([limits.position_upper, *(high for _, high in ends)])
         said = {(joint, quantity): GIVEN for joint in joints for quantity in ORDERS}
-        return cls(tuple(joints), lower, upper, free, said)
+        return cls(tuple(joints), lower, upper, limits.deceleration, said)
 
     @classmethod
     def from_values(
@@ -102,15 +103,14 @@ class JointLimits:
     @property
     def symmetric(self) -> Limits:
         """`two_sided` with the smaller size on both sides, which implies these limits."""
-        limits = self.two_sided
-        return limits.with_derivatives(limits.sides.min(axis=0))
+        return self.two_sided.narrow
 
     @property
     def two_sided(self) -> Limits:
         """The same limits for `Problem` and `solve`, each side of its own size.
 
-        These have no separate deceleration: if it is given, the smallest of the deceleration and
-        both sides of the acceleration is used on both sides.
+        A deceleration that goes with no single size of acceleration is none of its own there: the
+        smallest of it and both sides of the acceleration is used on both sides.
 
         Raises
         ------
@@ -126,11 +126,18 @@ class JointLimits:
                     "state it, or inf for none"
                 )
         sides = np.stack([-self.lower[:, 1:], self.upper[:, 1:]])
-        braking = np.isfinite(self.deceleration)
         least = np.minimum(sides[:, :, 1].min(axis=0), self.deceleration)
-        sides[:, braking, 1] = least[braking]
+        sides[:, self.joined_braking, 1] = least[self.joined_braking]
         free = Limits(joints=len(self.joints)).with_positions(self.lower[:, 0], self.upper[:, 0])
-        return free.with_sides(np.abs(sides))
+        apart = np.where(self.joined_braking, np.inf, self.deceleration)
+        return free.with_sides(np.abs(sides)).with_deceleration(apart)
+
+    @property
+    def joined_braking(self) -> NDArray[np.bool_]:
+        """Joints whose deceleration `two_sided` joins with the acceleration."""
+        low, high = self.lower[:, 2], self.upper[:, 2]
+        one_size = np.isfinite(high) & (-low == high) & (self.deceleration > 0)
+        return np.asarray(np.isfinite(self.deceleration) & ~one_size)
 
     def source(self, joint: str, quantity: str) -> str:
         """Where a limit is stated, in words."""

@@ -9,14 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..checks import Verdict
+from ..checks import Verdict, one_sided_extreme
 from ..curves import Trajectory, furthest
 from ..errors import TrajgapError
 from ..limits import half_range
 from .floor import Floor, least_time
 from .joint_limits import BRAKING, ORDERS, JointLimits, unstated_words
 from .motion import EPS, Motion, derivative_terms
-from .one_sided import one_sided_extreme
 
 MOTION_TOLERANCE = 1e-6
 """Relative excess over a limit that still counts as keeping it: files carry printed digits."""

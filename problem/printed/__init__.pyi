@@ -19,6 +19,7 @@ from .fields import (
     PositionUnits as PositionUnits,
     PrintedRows as PrintedRows,
     Ratios as Ratios,
+    SnapUnits as SnapUnits,
     Strict as Strict,
     Text as Text,
     TextOrEach as TextOrEach,

@@ -351,6 +351,7 @@ PositionUnits = Annotated[UnitOrEach, *_units("position")]
 VelocityUnits = Annotated[UnitOrEach, *_units("velocity")]
 AccelerationUnits = Annotated[UnitOrEach, *_units("acceleration")]
 JerkUnits = Annotated[UnitOrEach, *_units("jerk")]
+SnapUnits = Annotated[UnitOrEach, *_units("snap")]
 TimeUnit = Annotated[
     str | None,
     PlainValidator(partial(check_unit, quantity="time")),

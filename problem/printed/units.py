@@ -13,7 +13,7 @@ from typing import Literal, get_args
 from ..errors import TrajgapError
 from .rounded import Printed, down, up
 
-Quantity = Literal["position", "velocity", "acceleration", "jerk", "time"]
+Quantity = Literal["position", "velocity", "acceleration", "jerk", "snap", "time"]
 AngleUnit = Literal["rad", "deg"]
 LengthUnit = Literal["m", "cm", "mm"]
 """Of links, of positions of the end, and of joints that slide."""
@@ -29,6 +29,7 @@ CHOICES = MappingProxyType(
         ),
         "acceleration": tuple(f"{unit}/s^2" for unit in _POSITIONS),
         "jerk": tuple(f"{unit}/s^3" for unit in _POSITIONS),
+        "snap": tuple(f"{unit}/s^4" for unit in _POSITIONS),
         "time": ("s", "ms", "min"),
     }
 )
@@ -81,14 +82,15 @@ _WRITTEN = (
     ("seconds?|secs?", "s"),
     ("minutes?|mins", "min"),
     ("per", "/"),
-    ("s(?:\\^?[-−]|⁻)(1|2|3|¹|²|³)", r"/s\1"),
+    ("s(?:\\^?[-−]|⁻)(1|2|3|4|¹|²|³|⁴)", r"/s\1"),
     ("min(?:\\^?[-−]1|⁻¹)", "/min"),
     ("¹", "1"),
     ("²", "2"),
     ("³", "3"),
+    ("⁴", "4"),
     (r"\^", ""),
     ("(?<=/s)1", ""),
-    ("(?<=/s)([23])", r"^\1"),
+    ("(?<=/s)([234])", r"^\1"),
 )
 """What papers write for the units of case files, as patterns in the order in which each is
 replaced."""
@@ -101,7 +103,7 @@ def is_linear(unit: str) -> bool:
 
 def shown_unit(unit: str) -> str:
     """A unit of case files as a sentence or a page writes it, such as ``°/s²``."""
-    return unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
+    return unit.replace("deg", "°").replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
 
 
 @lru_cache(maxsize=64)

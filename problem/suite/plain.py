@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Any, cast
 
 from ..curves import Interpolant
-from ..limits import QUANTITIES
+from ..limits import QUANTITIES, USUAL
 from .instance import BenchmarkInstance
 from .shelf import suite_version
 
@@ -73,7 +73,7 @@ def plain_text(instance: BenchmarkInstance) -> str:
     # The suite holds declared piecewise polynomials alone.
     curve = cast(Interpolant, instance.problem().curve)
     joints = [None] * instance.joints
-    limits = {key: raw["limits"].get(key, [math.inf for _ in joints]) for key in QUANTITIES}
+    limits = {key: raw["limits"].get(key, [math.inf for _ in joints]) for key in QUANTITIES[:USUAL]}
     known: list[tuple[str, object]] = [
         ("format", FORMAT),
         ("suite", suite_version()),

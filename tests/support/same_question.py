@@ -35,7 +35,7 @@ def same_question(name: str, problem: Problem, h: Array) -> tuple[Problem, Array
         }
         return replace(problem, waypoints=q[::-1], limits=turned, curve=curve, **ends), h[::-1]
     if name == "slower":
-        slow = limits.with_sides(sides / SLOWER ** np.arange(1, 4))
+        slow = limits.with_sides(sides / SLOWER ** np.arange(1, 1 + sides.shape[2]))
         curve = ends_of(problem.curve, lambda r, v: v / SLOWER**r)
         ends = {key: SLOWER * getattr(problem, key) for key in ("duration_lower", "duration_upper")}
         return replace(problem, limits=slow, curve=curve, **ends), SLOWER * h

@@ -9,7 +9,6 @@ from math import pi
 import numpy as np
 
 from ....problem import (
-    QUANTITIES,
     Array,
     LimitPair,
     Problem,
@@ -208,7 +207,7 @@ def _at_samples(problem: Problem, durations: Array, trajectory: Trajectory) -> f
     pieces = range(len(trajectory.breaks) - 1)
     for joint in range(len(problem.joints)):
         low, high = float(limits.position_lower[joint]), float(limits.position_upper[joint])
-        for order in range(len(QUANTITIES) + 1):
+        for order in range(len(limits.quantities) + 1):
             found = np.array([trajectory.values(piece, joint, order, places) for piece in pieces])
             sides = limits.sides[:, joint, order - 1] if order else np.array([-low, high])
             for most, limit in zip((-found.min(), found.max()), sides, strict=True):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ....problem import QUANTITIES, Verdict, shown_bound
+from ....problem import USUAL, Verdict, shown_bound
 from ....problem.cases import AnyClaim, StatementClaim, TimeClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..digit_ranges import below_certified
@@ -303,7 +303,8 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         for row in motions:
             curve = row.posed().curve
             built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
-            jumps += [(row, jump) for jump in row.check.jumps]
+            # A step of jerk forbids a limit of snap alone.
+            jumps += [(row, jump) for jump in row.check.jumps if jump.order < USUAL]
         if not motions:
             continue
         count = len(motions)
@@ -348,7 +349,7 @@ def _may_be_smooth(row: PrintedRow[AnyClaim]) -> bool:
     problem = row.posed()
     shares = problem.curve.smooth_shares(problem.waypoints)
     if shares is None:
-        return not row.check.jumps
+        return not any(jump.order < USUAL for jump in row.check.jumps)
     if row.statement.loose_ends:
         return True
     box = row.boxes[0].or_cut_off()
@@ -392,7 +393,7 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             continue
         problem = row.posed()
         tight = []
-        for r, quantity in enumerate(QUANTITIES, start=1):
+        for r, quantity in enumerate(problem.limits.quantities, start=1):
             limits = problem.limits.sides[:, :, r - 1]
             for top in largest(row, r):
                 limit = float(limits[int(top.value > 0.0), top.joint])

@@ -78,7 +78,7 @@ def _only_velocity(problem: Problem) -> bool:
     """Whether nothing but the velocity is limited."""
     limits = problem.limits
     return bool(
-        np.isinf([limits.acceleration, limits.jerk]).all()
+        not limits.limited[:, 1:].any()
         and not limits.limits_position
         and not (problem.duration_lower > 0).any()
         and not np.isfinite(problem.duration_upper).any()

@@ -11,6 +11,7 @@ import numpy as np
 
 from ....problem import (
     QUANTITIES,
+    USUAL,
     Curve,
     Interval,
     Printed,
@@ -199,7 +200,7 @@ def _at_rest(
             ]
         if not judged:
             continue
-        derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
+        derivatives = [QUANTITIES[r - 1] for r in orders if r <= USUAL]
         names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
         verdict, kind, unknown = ClaimVerdict.SUPPORTED, "at rest", ""
         message = f"On the stated curve {names} 0 at both ends of every printed motion."
@@ -234,7 +235,7 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
     problem = row.posed()
     trajectory = row.motion
     for order in orders:
-        if order > len(QUANTITIES):
+        if order > USUAL:
             continue
         quantity = QUANTITIES[order - 1]
         tops = [abs(top.value) for top in largest(row, order)]

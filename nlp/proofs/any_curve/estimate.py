@@ -232,10 +232,15 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 def _not_covered(problem: Problem) -> str | None:
     """The reason why there is no value, as far as it is known before solving."""
     limits, restless = problem.limits, _restless(problem)
+    if limits.braking.any():
+        return "deceleration has a limit of its own; this optimum is computed within one size only"
     if limits.uneven:
         return "lower and upper limits differ; this optimum is computed within equal ones only"
-    if np.isfinite(limits.jerk[restless]).any():
-        return "jerk is limited; the optimum over all curves is computed for v and a limits only"
+    higher = limits.limited[restless][:, 2:].any(axis=0)
+    if higher.any():
+        highest = limits.quantities[2 + int(np.argmax(higher))]
+        only = "the optimum over all curves is computed for v and a limits only"
+        return f"{highest} is limited; {only}"
     for name, values in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):
         stuck = np.flatnonzero(restless & (values == 0))
         if stuck.size:

@@ -10,7 +10,6 @@ from support.positions import WAYPOINTS, position_ratios
 from support.same_question import DRESSES, SLOWER, same_question
 from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import (
-    QUANTITIES,
     Array,
     Check,
     ClampedBSpline,
@@ -78,8 +77,8 @@ def motion(name: str, uneven: bool = False) -> Motion:
         curve = (DECLARATIONS | FREE)[name]
         problem, h = sample_problem(curve, 41)
         nodal = rng.normal(size=(curve.free, 3)) if curve.free else None
-    peaks = np.abs([ends(problem, h, nodal, order) for order in (1, 2, 3)]).max(axis=2).T
-    sides = np.tile((peaks + 0.1) * rng.uniform(0.7, 1.5, (3, 3)), (2, 1, 1))
+    peaks = np.abs([ends(problem, h, nodal, order) for order in (1, 2, 3, 4)]).max(axis=2).T
+    sides = np.tile((peaks + 0.1) * rng.uniform(0.7, 1.5, (3, 4)), (2, 1, 1))
     if uneven:
         sides *= rng.uniform(0.5, 1.5, sides.shape)
     q = problem.waypoints
@@ -123,7 +122,7 @@ def test_checker_batch_and_dense_samples_agree(name: str, uneven: bool) -> None:
             assert np.isinf(found.positions[i]).all()
             assert not keeps_limits(problem, one[None], 5e-10)[0]
             continue
-        for r, quantity in enumerate(QUANTITIES):
+        for r, quantity in enumerate(problem.limits.quantities):
             ratios = worst(own, problem.joints, quantity)
             assert found.ratios[i, :, r] == pytest.approx(ratios, rel=1e-9, abs=1e-9)
         assert found.stretch[i] == pytest.approx(own.stretch, rel=1e-9)
@@ -133,7 +132,7 @@ def test_checker_batch_and_dense_samples_agree(name: str, uneven: bool) -> None:
             kept = keeps_limits(problem, one[None], 5e-10)[0]
             assert kept == (own.limits is Verdict.PASS)
     limits = problem.limits
-    for r in range(3):
+    for r in range(limits.sides.shape[2]):
         least, most = ends(problem, h, nodal, r + 1).T
         below, above = limits.sides[:, :, r]
         sampled = np.maximum(0.0, np.maximum(-least / below, most / above))

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from trajgap.problem import Trajectory, fit, quintic_spline
+from trajgap.problem.checks import one_sided
 from trajgap.problem.curves import PERM
-from trajgap.problem.motions import one_sided
 
 REST = 1e-6
 S = np.linspace(0.0, 1.0, 4001)

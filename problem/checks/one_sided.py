@@ -68,8 +68,13 @@ def one_sided_extreme(
     return found
 
 
-def _part(v: Array, a: Array, blur: Array, err: Array, sign: float, rest: float) -> OneSided:
-    """The same of some pieces, powers first, apart from accelerations below their own error."""
+def intervals(v: Array, a: Array) -> tuple[Array, Array, Array, Array]:
+    """Pieces cut where speed, acceleration or jerk is 0, of shape (intervals, pieces).
+
+    From coefficients of speed and acceleration, powers first. Ends of the intervals, and, at their
+    middles, the speed and its product with the acceleration: above 0 the speed grows. Where there
+    are fewer, the last intervals have no length.
+    """
     roots = [roots_in_unit(one) for one in (v, a, derived(a, 1))]
     edge = np.zeros((1, v.shape[1]))
     inner = np.nan_to_num(np.concatenate(roots), nan=1.0)
@@ -77,14 +82,31 @@ def _part(v: Array, a: Array, blur: Array, err: Array, sign: float, rest: float)
     low, high = cuts[:-1], cuts[1:]
     middle = 0.5 * (low + high)
     speed = valued(v[:, None], middle)
+    return low, high, speed, speed * valued(a[:, None], middle)
+
+
+def one_sided_sizes(v: Array, a: Array) -> Array:
+    """Largest |acceleration| of each piece while its speed grows, and while it falls; (2, pieces).
+
+    From coefficients of speed and acceleration, powers first, without a bound on errors.
+    """
+    low, high, _, growth = intervals(v, a)
+    tops = np.maximum(*(np.abs(valued(a[:, None], end)) for end in (low, high)))
+    wide = low < high
+    sides = [np.where(wide & (sign * growth > 0.0), tops, 0.0) for sign in (1.0, -1.0)]
+    return np.asarray(np.max(sides, axis=1))
+
+
+def _part(v: Array, a: Array, blur: Array, err: Array, sign: float, rest: float) -> OneSided:
+    """The same of some pieces, powers first, apart from accelerations below their own error."""
+    low, high, speed, growth = intervals(v, a)
     moving = (low < high) & (np.abs(speed) + blur > rest)
     turned = np.abs(valued(v[:, None], low)) > np.abs(valued(v[:, None], high))
     slow, fast = np.where(turned, high, low), np.where(turned, low, high)
     known = _near(v, slow, fast, blur)
     at_slow, at_fast = (np.abs(valued(a[:, None], one)) for one in (slow, fast))
     at_known = np.where(np.isnan(known), -np.inf, np.abs(valued(a[:, None], known)))
-    right = sign * speed * valued(a[:, None], middle) > 0.0
-    counted = moving & (np.abs(speed) > rest) & right
+    counted = moving & (np.abs(speed) > rest) & (sign * growth > 0.0)
     top = np.where(counted, np.maximum(at_slow, at_fast), 0.0)
     surely = counted & ~np.isnan(known)
     sure = np.where(surely, np.maximum(at_known, at_fast) - err, 0.0)
