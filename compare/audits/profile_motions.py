@@ -212,6 +212,11 @@ class ProfileMotion:
         close = ROUNDING * self.total_time
         return np.array([self._at(time - close, joint), self._at(time + close, joint)])
 
+    def meetings(self, low: float, high: float) -> list[float]:
+        """Instants between two where phases of a joint meet, s."""
+        times = [phase.time for laws in self.laws for phase in laws[0].phases]
+        return [float(t) for t in np.cumsum([0.0, *times]) if low < t < high]
+
     def states(self, joint: int) -> Array:
         """States between which all rises or falls, also where it jumps, shape (states, 3)."""
         found: list[AxisState] = []
@@ -228,6 +233,9 @@ class ProfileMotion:
         return np.array(found or [self._at(0.0, joint)])
 
     def _at(self, time: float, joint: int) -> AxisState:
+        for outside, side in ((time < 0.0, 0), (time > self.total_time, -1)):
+            if outside and not self.question.ends[side, joint].any():
+                return AxisState(float(self.question.points[side, joint]))
         left = time
         for k, (laws, length) in enumerate(zip(self.laws, self.lengths, strict=True)):
             if left <= length or k == len(self.laws) - 1:
@@ -404,5 +412,5 @@ def numbers_of(
         times = [sum(motion.lengths[:at])]
     else:
         one = row.time(claim.time).cut_off()
-        times = [one.value, one.lower, one.upper]
+        times = [one.value, one.lower, one.upper, *motion.meetings(one.lower, one.upper)]
     return [float(value) for t in times for value in motion.near(t, joint)[:, order]]

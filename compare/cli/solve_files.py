@@ -11,6 +11,7 @@ import numpy as np
 
 from ...nlp import Solution, retimed_motion
 from ...problem import Case, CaseError, FileLimits, parse_case, scaffold
+from ...problem.cases import units_in_header
 from ...problem.limit_files import read_urdf
 from ...problem.motions import (
     Evaluated,
@@ -36,10 +37,11 @@ def points_case(
 
     `source`: CSV, as `scaffold` reads it. `degree`: as in `scaffold`.
     """
-    units = words(options.units) or ("rad",)
+    units = options.units or units_in_header(source) or "rad"
+    options = replace(options, units=units)
     text = scaffold(
         source,
-        {"position": ",".join(units)},
+        {"position": ",".join(words(units))},
         family=family,
         degree=degree,
         limits_of=limits_of_table(source, options),

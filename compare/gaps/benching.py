@@ -215,7 +215,11 @@ def plan_bench(
     Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
     optimisers are independent samples, even with equal seeds.
     """
+    if not isinstance(problem, Problem):
+        raise TrajgapError(f"bench: {type(problem).__name__} is not a Problem; give one first")
     judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
+    if not (isinstance(optimizers, Iterable) or callable(optimizers)):
+        raise TrajgapError(f"bench: {optimizers!r} is no optimiser; give names or functions")
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
     box = search_box(problem)
     entrants, notes = enter(box, list(names), handling, settings or {}, baselines)

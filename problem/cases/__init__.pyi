@@ -52,7 +52,12 @@ from .load import (
 )
 from .moving_ends import end_states as end_states
 from .robot_file import load_robot as load_robot, robot_ids as robot_ids
-from .scaffolding import FileLimits as FileLimits, identity_of as identity_of, scaffold as scaffold
+from .scaffolding import (
+    FileLimits as FileLimits,
+    identity_of as identity_of,
+    scaffold as scaffold,
+    units_in_header as units_in_header,
+)
 from .schema import (
     AlgorithmBlock as AlgorithmBlock,
     Assumption as Assumption,

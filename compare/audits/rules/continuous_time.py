@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -40,7 +41,9 @@ _ELSEWHERE = "elsewhere"
         "Position, velocity and acceleration are continuous",
         "Are position, velocity and acceleration continuous, as the paper says?",
         "Supported if the motion built from the printed numbers is continuous under the "
-        "reading, inconsistent if it jumps. Limits are judged separately from jumps.",
+        "reading, inconsistent if it jumps. If only acceleration jumps and the quoted text does "
+        "not speak of acceleration, it is not checkable: a trajectory is also called continuous if "
+        "position and velocity are. Limits are judged separately from jumps.",
         "Cubic segments that are stretched one by one have equal slopes only if neighbouring "
         "durations are equal; otherwise the velocity jumps at the via-points.",
     ),
@@ -223,6 +226,15 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 "The motion jumps at the printed durations; what rounds to them or is cut off to "
                 "them may have the proportions of the parameters, with which it is smooth."
             )
+        elif jumps and not (
+            any(jump.order < 2 for _, jump in jumps) or _speaks_of_acceleration(claim)
+        ):
+            verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "acceleration jumps", ""
+            message = (
+                f"Position and velocity are continuous in {which} rebuilt from the printed "
+                f"durations, and acceleration is not: it jumps {len(jumps)} times. The sentence "
+                "does not say whether it speaks of acceleration."
+            )
         elif jumps:
             largest_ones = " and ".join(
                 f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {seconds(top.time)} by "
@@ -244,6 +256,12 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             reading=reading,
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
+
+
+def _speaks_of_acceleration(claim: StatementClaim) -> bool:
+    return (
+        re.search(r"accel|\b[CG][\^ -]?[2-9²³⁴]|smooth|jerk", claim.text, re.IGNORECASE) is not None
+    )
 
 
 def _may_be_smooth(row: PrintedRow[AnyClaim]) -> bool:

@@ -192,7 +192,7 @@ def test_joints_between_moving_ends_arrive_together(
 
 def test_a_moving_joint_may_be_too_early_for_the_slowest_one() -> None:
     """Joint 1 may take up to 0.87 s, and not again before 1.2385 s (ruckig)."""
-    curve = MOVING | dict.fromkeys(("end_derivatives", "finish_derivatives"), [[1, 0], 0])
+    curve = MOVING | {key: [[1, 0], 0] for key in ("end_derivatives", "finish_derivatives")}
     for value, verdict in (("1.06", "inconsistent"), ("1.24", "supported")):
         found = judged("s-curve", value, [[0, "0.2000"], [0, "0.7000"]], curve, **ONE)
         assert found.verdict == verdict
@@ -259,6 +259,25 @@ def test_an_optimal_profile_is_the_shortest() -> None:
         own = total("t", value, profile="s-curve", **CLAIM)
         text = paper([[0, 1]], own, sentence("s", "optimal", "t"), curve=QUINTIC, **ONE)
         assert finding(text, "s", "TG304").verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("time", "value", "verdict"),
+    [
+        # 1 rad within 1.9 rad/s and 4 rad/s²: it cruises from 0.475 s to 0.526 s.
+        ("0.5", "4", "supported"),
+        ("0.5", "-4", "supported"),
+        ("0.500", "4", "inconsistent"),
+        ("0.0", "0", "supported"),
+        ("1.5", "0", "supported"),
+        ("1.5", "-4", "inconsistent"),
+    ],
+)
+def test_an_acceleration_may_be_that_of_either_side(time: str, value: str, verdict: str) -> None:
+    own = total("t", "1.00", profile="trapezoidal", **CLAIM)
+    asked = claim("v", "value", of="t", derivative="acceleration", time=time, value=value)
+    text = paper([[0, 1]], own, asked, curve=QUINTIC, velocity="1.90", acceleration=4)
+    assert finding(text, "v", "TG304").verdict == verdict
 
 
 STRAIGHT = {"profile": "trapezoidal", "path": "straight"}
