@@ -106,50 +106,79 @@ class AxisProfile:
 
 
 def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
-    """The shortest motion whose acceleration is limited; accelerations of the states do not count.
+    """The shortest of `trapezoids`; None if no motion keeps the limits."""
+    return min(trapezoids(start, finish, sizes), key=_length, default=None)
+
+
+def _length(profile: AxisProfile) -> float:
+    return profile.total_time
+
+
+def trapezoids(
+    start: AxisState, finish: AxisState, sizes: Sizes, total: float | None = None
+) -> list[AxisProfile]:
+    """The motions of limited acceleration that come farthest in their time, on either side.
 
     The velocity rises to one value v, stays and falls, or the other way round. Rising through dv
     takes the way v dv/a with a = A where the speed grows and a = D where it falls, so rising
-    from u to v takes g(v) − g(u), and falling from v to w takes g(−w) − g(−v), where g(v) is
-    v²/(2A) for positive v and v²/(2D) for others. It rises first if the way is longer than that
-    of the direct change from the first velocity to the last.
-
-    It is None if no motion keeps the limits.
+    from u to v takes g(v) − g(u), and falling from v to w takes g(−v) − g(−w), where g(v) is
+    v²/(2A) for positive v and v²/(2D) for others. Accelerations of the states do not count.
 
     Parameters
     ----------
     sizes : Sizes
         A start above the velocity limit is braked into it first.
+    total : float or None
+        If given, the motions take this time (s) and end elsewhere; otherwise they end at the goal.
     """
     top = sizes.velocity
     if abs(finish.velocity) > top:
-        return None
+        return []
     if abs(start.velocity) > top:
         first = _ramp(start, copysign(top, start.velocity), sizes)
-        rest = shortest_trapezoid(first.at(inf), finish, sizes)
-        return None if rest is None else first.then(rest)
+        left = None if total is None else total - first.total_time
+        return [first.then(one) for one in trapezoids(first.at(inf), finish, sizes, left)]
+    change = _ramp(start, finish.velocity, sizes).total_time
+    slack = 0.0 if total is None else total - change
+    if slack < -FEW_ROUNDINGS * change:
+        return []
+    found = []
+    for sign in (1.0, -1.0):
+        begin, last = _seen(start, finish, sign)
+        least = max(begin.velocity, last.velocity)
+        if total is None:
+            peaks = _speeds(begin, last, sizes)
+        else:
+            # A higher peak takes longer by its distance over A and over D, whatever its sign.
+            pace = 1.0 / sizes.acceleration + 1.0 / sizes.braking
+            peak = min(top, least + max(0.0, slack) / pace) if pace else top
+            peaks = [(peak, max(0.0, slack - (peak - least) * pace))]
+        for peak, cruise in peaks:
+            rising = _ramp(begin, peak, sizes)
+            held = rising.then(AxisProfile(rising.at(inf), (Phase(cruise, 0.0),)))
+            one = held.then(_ramp(held.at(inf), last.velocity, sizes))
+            found.append(one if sign > 0.0 else one.mirrored())
+    return found
+
+
+def _speeds(start: AxisState, finish: AxisState, sizes: Sizes) -> list[tuple[float, float]]:
+    """Largest velocities of the motions to the goal that rise first, and how long they last."""
 
     def way(velocity: float) -> float:
         size = sizes.acceleration if velocity > 0.0 else sizes.braking
         return velocity**2 / (2.0 * size) if velocity else 0.0
 
-    ahead = finish.position - start.position
-    if ahead < _ramp(start, finish.velocity, sizes).at(inf).position - start.position:
-        mirror = shortest_trapezoid(start.mirrored(), finish.mirrored(), sizes)
-        return None if mirror is None else mirror.mirrored()
-    needed = ahead + way(start.velocity) + way(-finish.velocity)
+    parts = (finish.position - start.position, way(start.velocity), way(-finish.velocity))
+    needed = sum(parts)
+    if needed < -FEW_ROUNDINGS * max(map(abs, parts)):
+        return []
     bend = 1.0 / (2.0 * sizes.acceleration) + 1.0 / (2.0 * sizes.braking)
-    if not isfinite(bend):
-        return None if needed > 0.0 else AxisProfile(start, ())
-    peak = min(top, sqrt(max(needed, 0.0) / bend) if bend else inf)
-    if not isfinite(peak):
-        return AxisProfile(start, ())
-    rising = _ramp(start, peak, sizes)
-    cruise = 0.0
-    if peak == top and peak > 0.0:
-        cruise = max(0.0, (needed - top**2 * bend) / top)
-    held = rising.then(AxisProfile(rising.at(inf), (Phase(cruise, 0.0),)))
-    return held.then(_ramp(held.at(inf), finish.velocity, sizes))
+    least, top = max(start.velocity, finish.velocity), sizes.velocity
+    if bend * top**2 < needed:
+        return [(top, (needed - top**2 * bend) / top)]
+    room = FEW_ROUNDINGS * max(abs(start.velocity), abs(finish.velocity))
+    peak = sqrt(max(needed, 0.0) / bend)
+    return [(max(one, least), 0.0) for one in {peak, -peak} if one >= least - room]
 
 
 def _ramp(start: AxisState, velocity: float, sizes: Sizes) -> AxisProfile:
@@ -166,24 +195,32 @@ def _ramp(start: AxisState, velocity: float, sizes: Sizes) -> AxisProfile:
 
 
 def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
-    """The shortest motion whose jerk is limited, also where no limit is symmetric about its states.
+    """The shortest of `s_curves`; None if there is none."""
+    return min(s_curves(start, finish, sizes), key=_length, default=None)
+
+
+def s_curves(
+    start: AxisState, finish: AxisState, sizes: Sizes, total: float | None = None
+) -> list[AxisProfile]:
+    """The motions of limited jerk that come farthest in their time, on either side.
 
     The jerk is at its limit or 0. Either the velocity reaches its limit, and then the motion goes
     to that speed as fast as it can, keeps it and leaves it as fast as it can; or the acceleration
     rises to a peak p, falls to a trough m and rises to its last value, or the other way round, and
-    stays a while at p or m where that is at the limit. Every such motion is computed, and the
-    shortest within the limits is the answer.
+    stays a while at p or m where that is at the limit. The shortest motion is one of them.
 
     Parameters
     ----------
     sizes : Sizes
         Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
         them, is braked into them first, as far as it does not leave them on the other side.
+    total : float or None
+        If given, the motions take this time (s) and end elsewhere; otherwise they end at the goal.
 
     Returns
     -------
-    AxisProfile or None
-        None if no motion was found: none keeps the limits, or one would leave them on the other
+    list of AxisProfile
+        Empty if no motion was found: none keeps the limits, or one would leave them on the other
         side while it is braked into them.
     """
     way = finish.position - start.position
@@ -191,33 +228,37 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
         cbrt(abs(way) / sizes.jerk),
         *(sqrt(abs(state.velocity) / sizes.jerk) for state in (start, finish)),
         *(abs(state.acceleration) / sizes.jerk for state in (start, finish)),
+        0.0 if total is None else total,
     )
     if unit == 0.0:
-        return AxisProfile(start, ())
+        return [AxisProfile(start, ())]
     # In units of time and way in which the jerk limit is 1 and no state is larger than 1.
     scale = (sizes.jerk * unit**3, sizes.jerk * unit**2, sizes.jerk * unit)
     first = AxisState(0.0, start.velocity / scale[1], start.acceleration / scale[2])
     last = AxisState(way / scale[0], finish.velocity / scale[1], finish.acceleration / scale[2])
     top, most = sizes.velocity / scale[1], sizes.acceleration / scale[2]
     if not _can_end(last, top, most):
-        return None
+        return []
     braked = _braked(first, top, most)
     begin = braked.at(inf)
+    left = None if total is None else total / unit - braked.total_time
     found = [
-        one if sign > 0.0 else one.mirrored()
+        braked.then(one if sign > 0.0 else one.mirrored())
         for sign in (1.0, -1.0)
-        for one in _candidates(*_seen(begin, last, sign), top, most)
-        if _keeps(one, _seen(begin, last, sign)[1], top, most)
+        for one in _candidates(*_seen(begin, last, sign), top, most, left)
+        if _keeps(one, _seen(begin, last, sign)[1], top, most, left)
     ]
-    if not found:
-        return None
-    best = min(found, key=lambda one: one.total_time)
-    phases = (
-        Phase(p.time * unit, p.acceleration * scale[2], p.jerk * sizes.jerk)
-        for p in braked.then(best).phases
-        if p.time > 0.0
-    )
-    return AxisProfile(start, tuple(phases))
+    return [
+        AxisProfile(
+            start,
+            tuple(
+                Phase(p.time * unit, p.acceleration * scale[2], p.jerk * sizes.jerk)
+                for p in one.phases
+                if p.time > 0.0
+            ),
+        )
+        for one in found
+    ]
 
 
 def _seen(start: AxisState, finish: AxisState, sign: float) -> tuple[AxisState, AxisState]:
@@ -284,17 +325,20 @@ def _change(start: AxisState, velocity: float, acceleration: float, most: float)
 
 
 def _candidates(
-    start: AxisState, finish: AxisState, top: float, most: float
+    start: AxisState, finish: AxisState, top: float, most: float, total: float | None
 ) -> Iterator[AxisProfile]:
     """The motions that go to the largest velocity, or whose acceleration rises first, jerk 1."""
     if isfinite(top):
         first = _change(start, top, 0.0, most)
         leaving = _change(AxisState(0.0, top), finish.velocity, finish.acceleration, most)
-        left = finish.position - first.at(inf).position - leaving.at(inf).position
-        if top > 0.0:
-            cruise = AxisProfile(first.at(inf), (Phase(left / top, 0.0),))
-            yield first.then(cruise).then(leaving)
-    for peak, held, trough, kept in _peaks(start, finish, most):
+        if total is None:
+            left = finish.position - first.at(inf).position - leaving.at(inf).position
+            time = left / top if top > 0.0 else -inf
+        else:
+            time = total - first.total_time - leaving.total_time
+        cruise = AxisProfile(first.at(inf), (Phase(time, 0.0),))
+        yield first.then(cruise).then(leaving)
+    for peak, held, trough, kept in _peaks(start, finish, most, total):
         yield AxisProfile(
             start,
             (
@@ -308,19 +352,24 @@ def _candidates(
 
 
 def _peaks(
-    start: AxisState, finish: AxisState, most: float
+    start: AxisState, finish: AxisState, most: float, total: float | None
 ) -> Iterator[tuple[float, float, float, float]]:
     """Peak of the acceleration, the time there, its trough and the time there, at velocity 1.
 
     With e = v − a²/2 at both ends and K = e₁ − e₀ the velocity asks for p² − m² = K where nothing
     is held. The way is then C + u³/4 + (e₀ + e₁)u − K²/(4u) with u = p − m, p + m = K/u and
-    C = v₁a₁ − a₁³/3 − v₀a₀ + a₀³/3. A time h at the limit A adds A·h to p² or m².
+    C = v₁a₁ − a₁³/3 − v₀a₀ + a₀³/3. A time h at the limit A adds A·h to p² or m². The time is
+    2u + a₁ − a₀ and h.
     """
     (place, v0, a0), (goal, v1, a1) = start, finish
     e0, e1 = v0 - a0**2 / 2.0, v1 - a1**2 / 2.0
     square = e1 - e0
     way = goal - place - (v1 * a1 - a1**3 / 3.0) + (v0 * a0 - a0**3 / 3.0)
-    for u in _roots([-(square**2), -4.0 * way, 4.0 * (e0 + e1), 0.0, 1.0]):
+    if total is None:
+        steps = list(_roots([-(square**2), -4.0 * way, 4.0 * (e0 + e1), 0.0, 1.0]))
+    else:
+        steps = [(total + a0 - a1) / 2.0]
+    for u in steps:
         if u > 0.0:
             yield (square / u + u) / 2.0, 0.0, (square / u - u) / 2.0, 0.0
     if not (isfinite(most) and most > 0.0):
@@ -333,11 +382,16 @@ def _peaks(
     )
     for peak, high, trough, low in held:
         lengths = (peak - a0, high, peak - trough, low, a1 - trough)
-        accelerations = (a0, peak, peak, trough, trough)
-        miss, velocity = Polynomial([place - goal]), Polynomial([v0])
-        for t, a, jerk in zip(lengths, accelerations, (1.0, 0.0, -1.0, 0.0, 1.0), strict=True):
-            miss = miss + t * (velocity + t * (a / 2.0 + t * jerk / 6.0))
-            velocity = velocity + t * (a + t * jerk / 2.0)
+        if total is None:
+            miss, velocity = Polynomial([place - goal]), Polynomial([v0])
+            states = zip(lengths, (a0, peak, peak, trough, trough), (1, 0, -1, 0, 1), strict=True)
+            for t, a, jerk in states:
+                miss = miss + t * (velocity + t * (a / 2.0 + t * jerk / 6.0))
+                velocity = velocity + t * (a + t * jerk / 2.0)
+        else:
+            miss = Polynomial([-total])
+            for t in lengths:
+                miss = miss + t
         for root in _roots(list(miss.coef)):
             yield tuple(  # type: ignore[misc]
                 one(root) if isinstance(one, Polynomial) else one
@@ -361,15 +415,19 @@ def _roots(coefficients: Sequence[float]) -> Iterator[float]:
         yield x
 
 
-def _keeps(profile: AxisProfile, finish: AxisState, top: float, most: float) -> bool:
+def _keeps(
+    profile: AxisProfile, finish: AxisState, top: float, most: float, total: float | None
+) -> bool:
     """Whether a motion reaches the last state within the limits, to `_ARRIVED`.
+
+    Where its time is given, its last position is not.
 
     A velocity that starts above its limit may be so until it is first within.
     """
     if any(phase.time < -_ARRIVED for phase in profile.phases):
         return False
     corners = profile.corners
-    missed = np.abs(np.subtract(corners[-1], finish)).max()
+    missed = np.abs(np.subtract(corners[-1], finish))[0 if total is None else 1 :].max()
     return bool(
         missed <= _ARRIVED
         and not any(dropwhile(bool, (abs(one.velocity) > top + _ARRIVED for one in corners)))

@@ -281,13 +281,26 @@ def audit_case(study: Study) -> CaseAudit:
     admissible = [reading.id for reading in study.case.readings]
     named = Named(study.case.labels, implausible(study), study.main_reading)
     judgements = tuple(
-        judge(claim.id, by_rule, admissible, study.readings, named) for claim in study.case.claims
+        judge(claim.id, by_rule, admissible, study.readings, named, _unruled(claim))
+        for claim in study.case.claims
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = rested(study.case, judgements)
     judgements = with_caveats(study, judgements, ordered)
     behind = find_causes(study, ordered, partial(explained, study, GROUPS))
     return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
+
+
+def _unruled(claim: AnyClaim) -> str:
+    """What is said of a claim that no finding is about."""
+    curve = getattr(claim, "other_curve", None)
+    if curve is None:
+        return "no rule of the audit can decide this claim"
+    return (
+        f"the time is of another curve ({curve}), and no motion is built on it: limits, peaks and "
+        "the distance from an optimum are not checkable; sums, means and improvements that are "
+        "printed of it are"
+    )
 
 
 def _judged(group: _Group, study: Study) -> list[Finding]:

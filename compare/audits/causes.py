@@ -57,6 +57,7 @@ def judge(
     admissible: Sequence[str],
     computed: Sequence[str] | None = None,
     named: Named = NAMELESS,
+    unruled: str = "",
 ) -> Judgement:
     """Combine the deciding findings about one claim into its verdict.
 
@@ -70,6 +71,8 @@ def judge(
         The readings that were computed, of which the verdict speaks; all by default.
     named : Named, optional
         What the readings are called; by their ids if left out.
+    unruled : str
+        What is said if no finding is about the claim.
     """
     about = [f for f in findings if f.claim == claim]
     own = [f for f in about if f.decides]
@@ -83,7 +86,7 @@ def judge(
         informs = not own and bool(about)
         sentences = next(
             (f.sentences if f.decides else _informing(f) for f in (*own, *about)),
-            ("no rule of the audit can decide this claim",),
+            (unruled,),
         )
         scope, evidence = Scope.NO, Evidence.NONE
         confidence: Confidence | Why = UNDECIDED

@@ -24,16 +24,20 @@ from ...problem.cases import (
     named_places,
 )
 from .axis_profile import AxisProfile, AxisState, Sizes
+from .common_times import FARTHEST, Axis, synchronised
 from .named_profiles import ALGORITHM, PRESCRIBED, SHORTEST
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS, ROUNDING
 from .stated import DERIVATIVES
 
 _CORNERS = 1024
-"""Combinations of ends of what digits leave: so many profiles take a few seconds. Where there are
-more, they are drawn: of 30 numbers that add up, the largest drawn sum is half of the largest."""
+"""Combinations of ends of what digits leave: so many profiles of one joint take a few seconds, and
+of n joints that arrive together an n-th is made. Where there are more, they are drawn: of 30
+numbers that add up, the largest drawn sum is half of the largest."""
 SIZES = ("largest", "smallest")
 """Places of a motion that are values."""
+_Laws = tuple[AxisProfile, ...]
+"""Motions in one segment: of each joint, or one for all."""
 
 
 @dataclass(frozen=True)
@@ -61,35 +65,50 @@ class ProfileQuestion:
             (self.limits + other.limits) / 2.0,
         )
 
-    def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
-        """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
+    def laws(self, profile: str, straight: bool) -> tuple[_Laws, ...] | None:
+        """The motions of each segment: of each joint, or of all on a straight line from 0 to 1.
 
         It is None if no motion was found that keeps the limits.
         """
+        found = [_laws(profile, axes) for axes in self.axes(straight)]
+        return None if None in found else tuple(one for one in found if one is not None)
+
+    def axes(self, straight: bool) -> list[list[Axis]]:
+        """Ends and limits of each segment: of each joint, or of the line from 0 to 1."""
         found = []
-        last = len(self.points) - 2
-        for k, (here, there) in enumerate(zip(self.points[:-1], self.points[1:], strict=True)):
+        for k, (here, there) in enumerate(pairwise(self.points)):
             if straight:
                 way = np.abs(there - here)
                 moves = way > 0.0
                 limits = (self.limits[moves] / way[moves, None]).min(axis=0, initial=inf)
-                start, finish = AxisState(0.0), AxisState(float(moves.any()))
+                ends = AxisState(0.0), AxisState(float(moves.any()))
+                found.append([(*ends, Sizes(*map(float, limits)))])
             else:
-                limits = self.limits[0]
-                start = AxisState(
-                    float(here[0]), *map(float, self.ends[0, 0] if k == 0 else (0, 0))
-                )
-                goal = self.ends[1, 0] if k == last else (0, 0)
-                finish = AxisState(float(there[0]), *map(float, goal))
-            if start == finish and not any(start[1:]):
-                found.append(AxisProfile(start, ()))
-                continue
-            able = bool(limits.all())
-            one = SHORTEST[profile](start, finish, Sizes(*map(float, limits))) if able else None
-            if one is None:
-                return None
-            found.append(one)
-        return tuple(found)
+                starts = _states(here, self.ends[0], k == 0)
+                goals = _states(there, self.ends[1], k == len(self.points) - 2)
+                sizes = [Sizes(*map(float, limits)) for limits in self.limits]
+                found.append([*zip(starts, goals, sizes, strict=True)])
+        return found
+
+
+def _states(places: Array, ends: Array, moves: bool) -> list[AxisState]:
+    return [
+        AxisState(float(place), *(map(float, end) if moves else ()))
+        for place, end in zip(places, ends, strict=True)
+    ]
+
+
+def _laws(profile: str, axes: Sequence[Axis]) -> _Laws | None:
+    """A motion of each axis within its limits; None if none was found."""
+    still = [start == finish and not any(start[1:]) for start, finish, _ in axes]
+    if all(still):
+        return tuple(AxisProfile(start, ()) for start, _, _ in axes)
+    if not all(all(sizes) for (_, _, sizes), rests in zip(axes, still, strict=True) if not rests):
+        return None
+    if len(axes) > 1:
+        return synchronised(profile, axes) if profile in FARTHEST else None
+    one = SHORTEST[profile](*axes[0])
+    return None if one is None else (one,)
 
 
 @dataclass(frozen=True)
@@ -97,7 +116,7 @@ class ProfileMotion:
     """A profile with the way-points that it joins."""
 
     question: ProfileQuestion
-    laws: tuple[AxisProfile, ...]
+    laws: tuple[_Laws, ...]
     straight: bool
     profile: str = "s-curve"
     """A key of `SHORTEST`."""
@@ -125,7 +144,21 @@ class ProfileMotion:
     @cached_property
     def total_time(self) -> float:
         """Its length, s."""
-        return sum(law.total_time for law in self.laws)
+        return sum(self.lengths)
+
+    @property
+    def lengths(self) -> list[float]:
+        """Lengths of its segments, s."""
+        return [max(law.total_time for law in laws) for laws in self.laws]
+
+    @property
+    def apart(self) -> float:
+        """Its length if no joint had to arrive together with another one, s."""
+        alone = (
+            [_laws(self.profile, [one]) for one in axes]
+            for axes in self.question.axes(self.straight)
+        )
+        return sum(max(law.total_time for one in every if one for law in one) for every in alone)
 
     @property
     def starts_outside(self) -> bool:
@@ -138,7 +171,7 @@ class ProfileMotion:
 
         The sign is positive in the direction of the way. Pieces that rounding leaves are none.
         """
-        (law,) = self.laws
+        ((law,),) = self.laws
         least = ROUNDING * self.total_time
         sign = 1.0 if law.at(inf).position >= law.start.position else -1.0
         found = []
@@ -179,10 +212,16 @@ class ProfileMotion:
         close = ROUNDING * self.total_time
         return np.array([self._at(time - close, joint), self._at(time + close, joint)])
 
+    def meetings(self, low: float, high: float) -> list[float]:
+        """Instants between two where phases of a joint meet, s."""
+        times = [phase.time for laws in self.laws for phase in laws[0].phases]
+        return [float(t) for t in np.cumsum([0.0, *times]) if low < t < high]
+
     def states(self, joint: int) -> Array:
         """States between which all rises or falls, also where it jumps, shape (states, 3)."""
         found: list[AxisState] = []
-        for k, law in enumerate(self.laws):
+        for k, laws in enumerate(self.laws):
+            law = laws[joint % len(laws)]
             state = law.start
             for phase in law.phases:
                 if phase.time > 0.0:
@@ -191,14 +230,17 @@ class ProfileMotion:
                     inside = AxisProfile(first, (phase,)).corners
                     found += [self._of(one, k, joint) for one in inside]
                     state = inside[-1]
-        return np.array(found or [self._of(self.laws[0].start, 0, joint)])
+        return np.array(found or [self._at(0.0, joint)])
 
     def _at(self, time: float, joint: int) -> AxisState:
+        for outside, side in ((time < 0.0, 0), (time > self.total_time, -1)):
+            if outside and not self.question.ends[side, joint].any():
+                return AxisState(float(self.question.points[side, joint]))
         left = time
-        for k, law in enumerate(self.laws):
-            if left <= law.total_time or k == len(self.laws) - 1:
-                return self._of(law.at(left), k, joint)
-            left -= law.total_time
+        for k, (laws, length) in enumerate(zip(self.laws, self.lengths, strict=True)):
+            if left <= length or k == len(self.laws) - 1:
+                return self._of(laws[joint % len(laws)].at(left), k, joint)
+            left -= length
         raise AssertionError("a motion has a segment")
 
     def _of(self, state: AxisState, segment: int, joint: int) -> AxisState:
@@ -255,7 +297,7 @@ def _own_limit(claim: ProfiledClaim) -> tuple[Printed | tuple[Printed, ...], Qua
     return None if claim.plateau is None else (claim.plateau, "velocity")
 
 
-def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion]:
+def questions(row: PrintedRow[ProfiledClaim], straight: bool) -> list[ProfileQuestion]:
     """The printed numbers first, then combinations of ends of what their digits leave."""
     problem = row.posed()
     box = row.waypoint_box(problem).or_cut_off()
@@ -285,8 +327,9 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion]:
         points = box.value.copy()
         points[-1] += step
         found.append(replace(plain, points=points))
-    if 2 ** len(free) > _CORNERS:
-        corners = np.random.default_rng(0).integers(0, 2, (_CORNERS, len(free)))
+    most = _CORNERS // (1 if straight else len(problem.joints))
+    if 2 ** len(free) > most:
+        corners = np.random.default_rng(0).integers(0, 2, (most, len(free)))
     else:
         corners = np.array([*product((0, 1), repeat=len(free))])
     for chosen in corners if free else ():
@@ -309,8 +352,8 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion]
     """
 
     def compute() -> list[ProfileMotion]:
-        asked = questions(row)
-        straight = len(row.posed().joints) > 1
+        straight = row.claim.path is not None and len(row.posed().joints) > 1
+        asked = questions(row, straight)
         printed = ProfileMotion.of(asked[0], profile, straight)
         if printed is None and profile == PRESCRIBED:
             every = (ProfileMotion.of(one, profile, straight) for one in asked)
@@ -366,8 +409,8 @@ def numbers_of(
         return [float(values.max() if claim.place == "largest" else values.min())]
     if claim.time is None:
         at = named_places(row.statement)[str(claim.place)]
-        times = [sum(law.total_time for law in motion.laws[:at])]
+        times = [sum(motion.lengths[:at])]
     else:
         one = row.time(claim.time).cut_off()
-        times = [one.value, one.lower, one.upper]
+        times = [one.value, one.lower, one.upper, *motion.meetings(one.lower, one.upper)]
     return [float(value) for t in times for value in motion.near(t, joint)[:, order]]

@@ -34,6 +34,9 @@ from .motion_results import checked_motion, shown_check
 from .options import LimitOptions
 from .output import Answering, emit, new_output
 
+_STANDING = float(np.finfo(np.float32).eps)
+"""Velocity up to which ros2_control takes the last point of a goal to rest, rad/s or m/s."""
+
 
 @dataclass(frozen=True)
 class MotionOptions(LimitOptions):
@@ -153,14 +156,18 @@ def judged(
 ) -> tuple[Interpolation | None, MotionCheck]:
     """The verdict on a file, and the interpolation it rests on; None for polynomials."""
     content = read.content
+    if isinstance(content, Samples) and read.controller:
+        how = Interpolation.CONTROLLER if how is None else how
+        plain = replace(read, controller=False)
+        found = judged(plain, limits, how, tolerance)[1]
+        return how, replace(found, concluded=(*found.concluded, *_last_point(content)))
     if isinstance(content, Motion):
         if how is not None:
             raise CaseError(
                 "--interpolation", "", "applies to samples only; polynomials are the motion itself"
             )
         return None, check_motion(content, limits, tolerance)
-    if how is None:
-        how = Interpolation.CONTROLLER if read.controller else Interpolation.NONE
+    how = Interpolation.NONE if how is None else how
     if how is Interpolation.NONE:
         return how, check_samples(content, limits, tolerance)
     found = check_motion(interpolated(content, how), limits, tolerance)
@@ -175,6 +182,22 @@ def judged(
             )
             found = replace(found, open=(told, *found.open))
     return how, found
+
+
+def _last_point(samples: Samples) -> list[str]:
+    """That a trajectory of ROS ends in motion, as a sentence, if it does."""
+    given = samples.velocity
+    if given is None:
+        return []
+    speeds = np.nan_to_num(np.abs(given[-1])) * (np.abs(given[-1]) > _STANDING)
+    if not speeds.any():
+        return []
+    j = int(np.argmax(speeds))
+    return [
+        f"The last point does not rest: joint {samples.joints[j]} has the velocity "
+        f"{given[-1, j]:.6g}. A joint_trajectory_controller may refuse that "
+        "(allow_nonzero_velocity_at_trajectory_end)."
+    ]
 
 
 def motion_document(

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from ...problem import CHOICES, CaseError, scaffold
-from ...problem.cases import identity_of
+from ...problem.cases import identity_of, units_in_header
 from .options import CurveOptions, LimitOptions
 from .output import new_output, say, warn
 from .solve_files import limits_of_table
@@ -86,6 +86,7 @@ def new(
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
     with new_output(out, "OUT") as write:
         needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
+        units["position"] = position_unit or units_in_header(table) or None
         given = {name: unit for name, unit in units.items() if unit is not None}
 
         def written(stated: Mapping[str, str]) -> str:

@@ -13,6 +13,7 @@ import typer
 
 from ...nlp import Solution, retimed_motion
 from ...problem import Case, CaseError, FileLimits, parse_case, scaffold
+from ...problem.cases import units_in_header
 from ...problem.limit_files import read_urdf
 from ...problem.motions import (
     Evaluated,
@@ -37,10 +38,11 @@ def points_case(source: str, options: LimitOptions, curve: CurveOptions) -> Case
 
     `source`: CSV, as `scaffold` reads it.
     """
-    units = words(options.units) or ("rad",)
+    units = options.units or units_in_header(source) or "rad"
+    options = replace(options, units=units)
     text = scaffold(
         source,
-        {"position": ",".join(units)},
+        {"position": ",".join(words(units))},
         family=curve.family,
         degree=curve.degree,
         limits_of=limits_of_table(source, options),

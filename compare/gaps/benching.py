@@ -210,7 +210,11 @@ def plan_bench(
     reading: str = "",
 ) -> BenchPlan:
     """Plan the runs of a bench; parameters and errors as `bench`."""
+    if not isinstance(problem, Problem):
+        raise TrajgapError(f"bench: {type(problem).__name__} is not a Problem; give one first")
     judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
+    if not (isinstance(optimizers, Iterable) or callable(optimizers)):
+        raise TrajgapError(f"bench: {optimizers!r} is no optimiser; give names or functions")
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
     box = search_box(problem)
     entrants, notes = enter(box, list(names), handling, settings or {}, baselines)

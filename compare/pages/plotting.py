@@ -80,6 +80,11 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
         if len(result.cases) != 1:
             raise TrajgapError(f"plot: the audit has {len(result.cases)} cases; plot one of .cases")
         result = result.cases[0]
+    if not isinstance(result, CaseAudit | Waterfall):
+        raise TrajgapError(
+            f"plot: {type(result).__name__} cannot be drawn; give what solve, bench or audit "
+            "return, or a motion with its limits"
+        )
     if isinstance(result, CaseAudit):
         fall, name = first_waterfall(result), result.case.title
         if fall is None:

@@ -115,6 +115,8 @@ def solve(
     """
     if starts < 1:
         raise TrajgapError(f"starts: must be 1 or more, got {starts}")
+    if not seconds > 0.0:
+        raise TrajgapError(f"seconds: must be positive, got {seconds}")
     points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
     nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
     wanted = (len(points), problem.curve.free, len(problem.joints))

@@ -53,7 +53,12 @@ from .load import (
     published_ids as published_ids,
 )
 from .moving_ends import end_states as end_states
-from .scaffolding import FileLimits as FileLimits, identity_of as identity_of, scaffold as scaffold
+from .scaffolding import (
+    FileLimits as FileLimits,
+    identity_of as identity_of,
+    scaffold as scaffold,
+    units_in_header as units_in_header,
+)
 from .schema import (
     AlgorithmBlock as AlgorithmBlock,
     Assumption as Assumption,

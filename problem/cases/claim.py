@@ -372,6 +372,8 @@ class StatementClaim(Claim):
     on the printed robot."""
     of: tuple[Id, ...] = ()
     """The claims whose durations it speaks about."""
+    derivative: Literal["velocity", "acceleration"] | None = None
+    """The highest derivative that a "continuous" sentence names; absent if it names none."""
     positions: tuple[Id, ...] = ()
     """Two printed positions, where ``checks`` is "above"."""
     against: Id | None = None
@@ -391,6 +393,8 @@ class StatementClaim(Claim):
                 'is required with checks = "none", and allowed only there; state why the sentence '
                 "cannot be checked, or choose another check",
             )
+        if self.derivative is not None and self.checks != "continuous":
+            raise fault(".derivative", 'is allowed only with checks = "continuous"; remove it')
         if (self.checks == "above") != (len(self.positions) == 2):
             raise fault(
                 ".positions", 'names two positions, and is allowed only with checks = "above"'

@@ -120,6 +120,7 @@ def scaffold(
         for number in each:
             add_digits(options, key, number)
     found = read_waypoint_table(table, read_text(path))
+    _refuse_units(table, found, checked.get("position", ""))
     joints, from_file, doubt = found.joints, "", ""
     stated: dict[str, str] = {}
     # Units for another number of joints are refused when the case is read.
@@ -263,6 +264,28 @@ def _units(
         except TrajgapError as error:
             faults.add(f"units.{key}", str(error))
     return checked
+
+
+def units_in_header(csv_path: str | Path) -> str:
+    """Units of positions that the header of a table states, with commas between.
+
+    It is empty if one of them is missing, or if the table cannot be read.
+    """
+    faults = Faults(str(csv_path))
+    try:
+        units = read_waypoint_table(faults, read_text(Path(csv_path))).units
+    except CaseError:
+        return ""
+    return "" if faults.found else ",".join(units) * all(units)
+
+
+def _refuse_units(faults: Faults, table: WaypointTable, units: str | tuple[str, ...]) -> None:
+    """Add that the header states another unit of a joint than the one it is to be read in."""
+    each = (units,) * len(table.units) if isinstance(units, str) else units
+    for joint, stated, unit in zip(table.joints, table.units, each, strict=False):
+        if stated and unit and stated != unit:
+            why = f"states joint {joint} in {stated}, but {unit} is the unit asked for"
+            return faults.add("line 1", f"{why}; give {stated} as the unit of positions")
 
 
 def identity_of(stem: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..errors import CaseError, TrajgapError
-from ..printed import MINUS_SIGNS, Printed
+from ..printed import CHOICES, MINUS_SIGNS, Printed, unit_meant
 from .faults import Faults
 
 _LABEL_HEADERS = (
@@ -20,6 +20,8 @@ _JOINT_HEADERS = ("joint", "joints", "axis", "axes")
 """The same of a first column that names joints: each row is a joint then."""
 _JOINT_NAME = re.compile(r"(joint|axis|j|q|θ|theta)[ _-]?[0-9]+", re.IGNORECASE)
 """What papers call a joint; way-points are A, P1, start or 1."""
+_UNIT_BEHIND = re.compile(r"(?P<name>.*[^\s/,]) *[/,]? *[\[(](?P<unit>[^\])]+)[\])]")
+"""A joint's name with a unit in brackets."""
 _TIME_HEADER = re.compile(r"(t|time)( *[\[(].*)?", re.IGNORECASE)
 """A column of instants, with its unit or without."""
 
@@ -32,6 +34,8 @@ class WaypointTable:
     labels: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     """Digits, (way-point, joint)."""
+    units: tuple[str, ...]
+    """Unit in brackets behind each joint's name, as case files write it; empty where none is."""
     counted: bool
     """Whether nothing but "1, 2, 3" names the joints, which might be angles."""
 
@@ -86,6 +90,7 @@ def read_waypoint_table(faults: Faults, text: str) -> WaypointTable:
         _name_joints(faults, labels, first, down=True)
         labels, names = names, labels
         numbers = [list(column) for column in zip(*numbers, strict=True)]
+    names, units = _without_units(names)
     points = len(numbers) if transposed else len(lines) - 1
     if points < 2:
         faults.add("", f"contains {points} way-points; give at least two rows of numbers")
@@ -93,8 +98,18 @@ def read_waypoint_table(faults: Faults, text: str) -> WaypointTable:
         joints=tuple(names),
         labels=tuple(labels),
         rows=tuple(map(tuple, numbers)),
+        units=units,
         counted=not first and bool(names) and _counts(names),
     )
+
+
+def _without_units(names: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
+    """Names of joints without the units of positions that stand behind them, and those units."""
+    found = [_UNIT_BEHIND.fullmatch(name) for name in names]
+    units = ["" if one is None else unit_meant(one["unit"]) for one in found]
+    units = [unit if unit in CHOICES["position"] else "" for unit in units]
+    each = zip(names, found, units, strict=True)
+    return [one["name"] if one and unit else name for name, one, unit in each], tuple(units)
 
 
 def add_digits(faults: Faults, field: str, text: str) -> None:

@@ -252,9 +252,10 @@ class ClampedDeclaration:
                 outside = int(np.argmin(inside))
                 low, high = knots[outside], knots[outside + p + 1]
                 raise TrajgapError(
-                    f"interpolant.knot_vector: no curve passes way-point {outside - rest}, whose "
-                    f"parameter {sites[outside]:g} (of 0 to 1) does not lie between the knots "
-                    f"{low:g} and {high:g} (Schoenberg and Whitney); correct knots or parameters"
+                    f"interpolant.knot_vector: no curve passes way-point {outside - rest + 1}, "
+                    f"whose parameter {sites[outside]:g} (of 0 to 1) does not lie between the "
+                    f"knots {low:g} and {high:g} (Schoenberg and Whitney); correct knots or "
+                    "parameters"
                 )
 
     @property

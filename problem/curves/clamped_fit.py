@@ -168,12 +168,12 @@ def _interpolated(
 
 
 def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
-    k = min(max(waypoint, 0), curve.segments - 1)
+    at = min(max(waypoint, 0), curve.segments)
     return CurveError(
-        f"durations: no {curve.name} passes the way-points at these times (way-point {waypoint} "
+        f"durations: no {curve.name} passes the way-points at these times (way-point {at + 1} "
         "lies outside the support of its basis function); bring the durations nearer to the "
         "proportions of the knots",
-        k,
+        min(at, curve.segments - 1),
         0.0,
     )
 

@@ -30,10 +30,16 @@ _WORDS = {
 _SYMBOLS = _WORDS | {"v": 1, "a": 2}
 """The same where a number alone follows, as in q1, qd1: one letter may be a joint's name too, so
 these count only beside a column of positions with that number."""
+_FORCES = "effort|torque|tau|force|current|voltage|temperature|jerk"
+"""What a column holds that is no part of the motion, alone, with a number or beside a joint."""
 _UNIT = re.compile(r".*(?:[\[(][^\])]*[\])]|[ _./-](?P<unit>deg|degrees?|mm|cm))", re.IGNORECASE)
 """A name that ends in a unit: any in brackets, or one that is not the default."""
 _GAP = r"[ ._:/-]"
 """What stands between a joint's name and such a word."""
+_ASIDE = re.compile(
+    rf"(.+{_GAP})?({_FORCES})s?({_GAP}.+)?{_GAP}?\d*([ _]?[\[(].*[\])])?", re.IGNORECASE
+)
+"""A column that is left out."""
 
 
 def read_csv(path: Path, joints: Sequence[str] = ()) -> Samples:
@@ -43,8 +49,9 @@ def read_csv(path: Path, joints: Sequence[str] = ()) -> Samples:
     ----------
     path : Path
         The first column, or the one named ``time``, is time in s. Other columns are positions, or
-        carry ``velocity`` or ``acceleration`` before or after the joint's name. Without a header
-        all others are positions. Commas, semicolons, tabs or blanks separate; # begins a comment.
+        carry ``velocity`` or ``acceleration`` before or after the joint's name; those of effort,
+        current, jerk and the like are left out. Without a header all others are positions.
+        Commas, semicolons, tabs or blanks separate; # begins a comment.
     joints : sequence of str, optional
         Names of the joints, where the header gives none.
 
@@ -167,6 +174,8 @@ def samples_of_columns(
         raise CaseError(
             name, "time", f"is {latest:g}, which is not a time in seconds; convert it to seconds"
         )
+    if not labels:
+        raise CaseError(name, "line 1", "no column holds positions; name one after each joint")
     parts: list[Array | None] = []
     rounded = np.zeros((3, len(labels)))
     for order, word in enumerate(("position", "velocity", "acceleration")):
@@ -205,7 +214,7 @@ def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[st
         )
     columns: dict[tuple[str, int], int] = {}
     for k, one in enumerate(header):
-        if k == times[0]:
+        if k == times[0] or _aside(one.strip().lower()):
             continue
         joint, order = _numbered(one.strip(), header) or _joint(one.strip())
         if not joint:
@@ -220,6 +229,12 @@ def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[st
             raise CaseError(name, "line 1", f"two columns are named {one.strip()!r}; rename one")
         columns[joint, order] = k
     return times[0], columns
+
+
+def _aside(column: str) -> bool:
+    """Whether a column is left out: it is named for what is no part of the motion alone."""
+    words = re.split(_GAP, column)
+    return not _WORDS.keys() & words and _ASIDE.fullmatch(column) is not None
 
 
 def _numbered(column: str, header: Sequence[str]) -> tuple[str, int] | None:

@@ -57,4 +57,5 @@ from .units import (
     scale as scale,
     shown_unit as shown_unit,
     to_si as to_si,
+    unit_meant as unit_meant,
 )

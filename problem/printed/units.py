@@ -151,7 +151,7 @@ def check_unit(unit: object, quantity: Quantity) -> str:
     choices = CHOICES[quantity]
     if unit in choices:
         return str(unit)
-    meant = _meant(unit)
+    meant = unit_meant(unit)
     if meant in choices:
         raise TrajgapError(f"unknown unit {unit!r} for {quantity}; write it as {meant!r}")
     fix = f"use one of {', '.join(choices)}"
@@ -161,7 +161,7 @@ def check_unit(unit: object, quantity: Quantity) -> str:
     raise TrajgapError(f"unknown unit {unit!r} for {quantity}; {fix}")
 
 
-def _meant(unit: object) -> str:
+def unit_meant(unit: object) -> str:
     """A unit as case files write it, where a paper's way of writing it is known."""
     written = str(unit).lower()
     for pattern, plain in _WRITTEN:

@@ -181,7 +181,7 @@ def nearest_number(
     meant: Meant,
     samples: Sequence[Mapping[str, float]],
     boxes: Boxes,
-    spread: float = 0.0,
+    spread: tuple[float, float] = (0.0, 0.0),
 ) -> Beside:
     """A printed number beside the one that it is nearest to, of those that it may be.
 
@@ -193,8 +193,9 @@ def nearest_number(
         In the unit of the paper.
     samples : sequence of dict
         What samples of the printed motion give instead, in the same words; may be empty.
-    spread : float
-        Further change that rounding allows, in the unit of the paper.
+    spread : tuple of float
+        Further change that rounding allows, and that cut-off digits allow, in the unit of the
+        paper.
     """
     middle, _, upper = flat(boxes)
     at_print = meant(*split(middle, boxes))
@@ -208,14 +209,14 @@ def nearest_number(
     tried = []
     for words, value in at_print.items():
         sampled = [one[words] for one in samples] or [value]
-        near, far = reach[words] + spread, 2 * (reach[words] + spread)
+        near, far = reach[words] + spread[0], 2 * reach[words] + max(2 * spread[0], spread[1])
         ends = min(sampled), max(sampled)
         tried.append(Beside(printed, rounded, wide, value, near, far, ends, unit, joint, words))
     fitting = [one for one in tried if one.fits]
     if not fitting:
         for i, one in enumerate(tried):
             near, far = (_farthest(meant, one.meaning, boxes, share) for share in (1.0, 2.0))
-            near, far = near + spread, far + 2 * spread
+            near, far = near + spread[0], far + max(2 * spread[0], spread[1])
             tried[i] = replace(one, reach=max(one.reach, near), far=max(one.far, far))
         fitting = [one for one in tried if one.fits]
     return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))

@@ -136,7 +136,9 @@ TG202 = Explained(
     "Position, velocity and acceleration are continuous",
     "Are position, velocity and acceleration continuous, as the paper says?",
     "Supported if the motion built from the printed numbers is continuous under the "
-    "reading, inconsistent if it jumps. Limits are judged separately from jumps.",
+    "reading, inconsistent if it jumps. If only acceleration jumps and the claim does not name "
+    "acceleration, it is not checkable: a trajectory is also called continuous if position and "
+    "velocity are. Limits are judged separately from jumps.",
     "Cubic segments that are stretched one by one have equal slopes only if neighbouring "
     "durations are equal; otherwise the velocity jumps at the via-points.",
     basis=Basis.CHECK,
@@ -323,6 +325,12 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 "The motion jumps at the printed durations; what rounds to them or is cut off to "
                 "them may have the proportions of the parameters, with which it is smooth."
             )
+        elif jumps and claim.derivative != "acceleration" and all(j.order > 1 for _, j in jumps):
+            said = f"Position and velocity are continuous in {which} rebuilt from the printed "
+            message = f"{said}durations; acceleration jumps {len(jumps)} times."
+            if claim.derivative is None:
+                verdict, kind = ClaimVerdict.NOT_CHECKABLE, "acceleration jumps"
+                more = "The claim does not name acceleration."
         elif jumps:
             largest_ones = " and ".join(
                 f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {seconds(top.time)} by "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -23,6 +24,7 @@ from ..printed_row import PrintedRow, printed_rows
 from ..rounding import ROUNDING
 from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
+from ..words import seconds
 from .beside import SAMPLES, Beside, nearest_number
 from .peaks import beside, peak_described
 from .rule_group import Explained, rule_group
@@ -182,37 +184,39 @@ def value_beside(
     unit = row.in_units(claim.derivative, 1.0, joint)
     statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
-    spread, instant = 0.0, None
+    marks = [] if at is None else [problem.curve.waypoint_breaks[at]]
+    spread, instant, sides = (0.0, 0.0), None, _near
     drawn, printed_durations = row.motion, row.durations.value
     if claim.time is not None:
         measured = row.measured(claim.time, "time")
-        instant = measured.value
+        instant, sides = measured.value, _around
         if instant > float(printed_durations.sum()) * (1 + ROUNDING):
             return None  # the motion has ended, and where the arm goes then is not printed
-        ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
-        spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)
-
-    def sides(trajectory: Trajectory, durations: Array) -> tuple[float, float] | None:
-        if instant is None and at is None:
-            return None
-        passed = durations[: problem.curve.waypoint_breaks[at or 0]].sum()
-        return _near(trajectory, float(passed) if instant is None else instant, j, order)
-
-    pair = sides(drawn, printed_durations)
-    jumps = pair is not None and abs(pair[0] - pair[1]) > ROUNDING * max(map(abs, pair))
+        ends = [(one.lower, one.upper) for one in (measured, measured.cut_off())]
+        marks = _jumps_between(drawn, *ends[1], j, order)
+        rounded, cut = (_spread(drawn, instant, low, high, j, order) for low, high in ends)
+        spread = unit * rounded, unit * cut
+    close = ROUNDING * float(drawn.breaks[-1])
+    apart = instant is not None and all(abs(drawn.breaks[b] - instant) > close for b in marks)
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
         trajectory = fit(problem.curve, waypoints, durations)
-        near = sides(trajectory, durations)
-        if near is None:
-            found = [one.value for one in extrema(trajectory, j, order)]
-            return {"": unit * (max(found) if claim.place == "largest" else min(found))}
-        if not jumps:
-            return {"": unit * near[1]}
-        return {" just before it": unit * near[0], " just after it": unit * near[1]}
+        if instant is None and not marks:
+            tops = [one.value for one in extrema(trajectory, j, order)]
+            return {"": unit * (max(tops) if claim.place == "largest" else min(tops))}
+        found = {}
+        if instant is not None and apart:
+            found[""] = unit * sides(trajectory, instant, j, order)[1]
+        for b in marks:
+            before, after = sides(trajectory, float(trajectory.breaks[b]), j, order)
+            if not apart and not _jumps(sides(drawn, float(drawn.breaks[b]), j, order)):
+                return {"": unit * after}
+            it = f"the jump at {seconds(drawn.breaks[b])}" if apart else "it"
+            found |= {f" just before {it}": unit * before, f" just after {it}": unit * after}
+        return found
 
     samples = []
-    if pair is None:
+    if instant is None and not marks:
         for count in SAMPLES:
             values = drawn(np.linspace(drawn.breaks[0], drawn.breaks[-1], count), order)[:, j]
             top = values.max() if claim.place == "largest" else values.min()
@@ -236,6 +240,48 @@ def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[floa
         min(at, pieces - 1), joint, order, np.array([0.0 if at < pieces else 1.0])
     )[0]
     return float(before), float(after)
+
+
+def _around(motion: Trajectory, time: float, joint: int, order: int) -> tuple[float, float]:
+    """The same of an instant: before a start at rest, and after a finish at rest, all is 0."""
+    before, after = _near(motion, time, joint, order)
+    close = ROUNDING * float(motion.breaks[-1])
+    for end, side in zip(motion.breaks[[0, -1]], (1.0, -1.0), strict=True):
+        left = side * (time - end)
+        if order > 1 and left <= close and abs(motion(np.array([end]), 1)[0, joint]) <= close:
+            inside = 0.0 if left < -close else after if side > 0.0 else before
+            before, after = (0.0, inside) if side > 0.0 else (inside, 0.0)
+    return before, after
+
+
+def _jumps(sides: tuple[float, float]) -> bool:
+    return abs(sides[0] - sides[1]) > ROUNDING * max(map(abs, sides))
+
+
+def _jumps_between(
+    motion: Trajectory, low: float, high: float, joint: int, order: int
+) -> list[int]:
+    """Breaks within a time at which a derivative jumps."""
+    close = ROUNDING * float(motion.breaks[-1])
+    inside = (low - close <= motion.breaks) & (motion.breaks <= high + close)
+    return [
+        int(b)
+        for b in np.flatnonzero(inside)
+        if _jumps(_around(motion, float(motion.breaks[b]), joint, order))
+    ]
+
+
+def _spread(
+    motion: Trajectory, instant: float, low: float, high: float, joint: int, order: int
+) -> float:
+    """Largest change within a time around an instant, apart from jumps."""
+    breaks = [float(motion.breaks[b]) for b in _jumps_between(motion, low, high, joint, order)]
+    times = sorted({low, high, instant, *breaks})
+    steps = [
+        abs(_around(motion, p, joint, order)[1] - _around(motion, q, joint, order)[0])
+        for p, q in pairwise(times)
+    ]
+    return max(steps, default=0.0)
 
 
 def value_described(row: PrintedRow[AnyClaim], claim: ValueClaim, one: Beside) -> str:

@@ -21,9 +21,9 @@ TG110 = Explained(
     "Does a joint cover the range that the text describes? Its largest and smallest printed "
     "angles are compared with those of the other printed joints.",
     "If the joint is said to vary most: supported if all joints are printed and no range is "
-    "larger; inconsistent, with a warning, if one is larger however the digits were rounded. "
-    "If it is only said to vary much, nothing is decided, because no text says how much that "
-    "is.",
+    "larger; inconsistent, with a warning, if one is larger however the digits were rounded or "
+    "cut off. If it is only said to vary much, nothing is decided, because no text says how much "
+    "that is.",
     "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
     "within 4.6 rad.",
     basis=Basis.DIGITS,
@@ -57,6 +57,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     printed = {label: [row[j] for row in rows] for j, label in enumerate(statement.labels)}
     printed |= {c.joint: list(c.values) for c in study.case.columns if c.joint is not None}
     ranges = {label: _range(numbers) for label, numbers in printed.items() if numbers}
+    cut = {label: _range(numbers, cut=True) for label, numbers in printed.items() if numbers}
     own = ranges.pop(str(claim.joint), None)
     if own is None:
         return TG110.finding(claim, "not printed", f"No angles of joint {claim.joint} are printed.")
@@ -86,8 +87,11 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     if claim.checks == "varies_much":
         # "Much" has no measure, and a joint that turns less may vary much in another sense.
         aside.append("The text does not say how much “much” is, so nothing is decided.")
-    elif any(least > own[1] for least, _ in ranges.values()):
-        more = [label for label, (least, _) in ranges.items() if least > own[1]]
+    elif more := [
+        label
+        for label, (least, _) in ranges.items()
+        if least > own[1] and cut[label][0] > cut[str(claim.joint)][1]
+    ]:
         plural = "s" if len(more) > 1 else ""
         kind, verdict = "others more", ClaimVerdict.INCONSISTENT
         said.append(f"Joint{plural} {', '.join(more)} var{'y' if plural else 'ies'} more.")
@@ -96,9 +100,9 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     return TG110.finding(claim, kind, *said, *aside, verdict=verdict, computed=computed)
 
 
-def _range(numbers: list[Printed]) -> tuple[Fraction, Fraction]:
-    """Least and largest range of all values that round to the digits."""
-    intervals = [n.interval for n in numbers]
+def _range(numbers: list[Printed], cut: bool = False) -> tuple[Fraction, Fraction]:
+    """Least and largest range of all values that round to the digits, or are cut off to them."""
+    intervals = [n.truncated if cut else n.interval for n in numbers]
     high = max(i.upper for i in intervals) - min(i.lower for i in intervals)
     low = max(i.lower for i in intervals) - min(i.upper for i in intervals)
     return max(low, Fraction(0)), high

@@ -23,6 +23,7 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
+from ..common_times import FARTHEST
 from ..named_profiles import (
     ALGORITHM,
     NOT_SHORTEST,
@@ -42,7 +43,7 @@ from ..profile_motions import (
     out_of_range,
     profiled_limits,
 )
-from ..rounding import FEW_ROUNDINGS, meet
+from ..rounding import FEW_ROUNDINGS, ROUNDING, meet
 from ..stated import place_of_value
 from ..study import Study
 from ..words import NO_PROFILE, percent, seconds
@@ -50,6 +51,8 @@ from .one_way import TG304, judge_one_way
 from .rule_group import rule_group
 
 _Profiled = TotalTimeClaim | PhasesClaim
+_ALONG = 0.999
+"""Cosine of the largest angle (2.6°) between a way and a state along it: digits are rounded."""
 
 
 def total_time(motion: ProfileMotion) -> list[float]:
@@ -76,6 +79,17 @@ class _Asked:
     def between(self) -> str:
         """Which states the profile joins."""
         return "from rest to rest" if self.resting else "between the states at both ends"
+
+    @property
+    def along_line(self) -> bool:
+        """Whether all joints could move on a straight line from one end to the other."""
+        question = self.every()[0].question
+        ways = question.points[[1, -1]] - question.points[[0, -2]]
+        return all(
+            abs(way @ state) >= _ALONG * np.linalg.norm(way) * np.linalg.norm(state)
+            for way, end in zip(ways, question.ends, strict=True)
+            for state in end.T
+        )
 
     def every(self, profile: str = "") -> list[ProfileMotion]:
         """The profile, or another one, at the printed numbers and at the ends of their digits."""
@@ -139,18 +153,21 @@ def _not_computed(asked: _Asked) -> str | None:
             f"The lower and upper limits differ; the {profile} profile is computed within limits "
             "of equal size only."
         )
-    if not asked.resting and (several or profile not in SHORTEST):
-        which = "of one joint" if several and profile in SHORTEST else "from rest to rest"
+    straight = several and asked.row.claim.path is not None
+    total = isinstance(asked.claim, TotalTimeClaim)
+    together = total and not straight and profile in FARTHEST
+    if not asked.resting and (profile not in SHORTEST or (several and not together)):
+        where = " on a straight line" if straight else ""
+        which = "of one joint" if profile in SHORTEST and not straight else "from rest to rest"
         return (
             "The case file gives derivatives other than 0 at the ends of the motion; the "
-            f"{profile} profile is computed {which} only."
+            f"{profile} profile{where} is computed {which} only."
         )
-    total = isinstance(asked.claim, TotalTimeClaim) and profile in RESTING
-    if total and asked.resting:
+    if total and profile in RESTING and asked.resting:
         return None
     if profile not in SHORTEST:
         return f"Phases and values of the {profile} profile are not computed."
-    if several and asked.row.claim.path is None:
+    if several and not straight and not together:
         return "Several joints that move separately have no common profile."
     states = end_states(asked.row.statement)[..., 0]
     if profile == ALGORITHM and states[..., 1].any():
@@ -232,13 +249,19 @@ def _total_beside(asked: _Asked) -> Finding:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
             said = 'fits if the joints stay on a straight line: add path = "straight" if they do'
     else:
-        how = asked.between
+        apart = len(row.posed().joints) > 1 and not straight
+        how = f"{asked.between}, with all joints arriving together," if apart else asked.between
         totals = asked.totals
         plain, fits = totals.plain, totals.meets(_meant(number))
         notes = _notes(asked, totals)
         if not fits and totals.spans(_ends(number)):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
             said = "lies within its jump"
+        elif not fits and apart and number.value > plain and asked.along_line:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
+            said = (
+                "is longer, as that of a profile on a straight line may be, which is not computed"
+            )
     if verdict is ClaimVerdict.SUPPORTED and not fits:
         verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
         away = f"{percent(abs(number.value / plain - 1), '.2f')} " if plain else ""
@@ -281,6 +304,11 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
         notes.append(
             "The start lies outside the limits: the profile brakes into them at once and is the "
             "shortest from there."
+        )
+    if every and totals.plain > every[0].apart * (1.0 + ROUNDING):
+        notes.append(
+            f"Each joint by itself can arrive within {seconds(every[0].apart)}, but not all of "
+            "them at the same time: a joint that moves at an end cannot arrive at every later time."
         )
     if asked.profile == ALGORITHM:
         best = asked.range(total_time, "s-curve")

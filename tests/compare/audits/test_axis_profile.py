@@ -11,22 +11,26 @@ from trajgap.compare.audits.axis_profile import (
     shortest_s_curve,
     shortest_trapezoid,
 )
+from trajgap.compare.audits.common_times import FARTHEST, Axis, synchronised
 from trajgap.compare.audits.named_profiles import double_s, fourth_order, jerk_impulses, s_curve
 
 
-def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None:
-    """The same by another library; None if it refuses the states."""
+def by_ruckig(*axes: Axis) -> float | None:
+    """The shortest common time by another library; None if it refuses the states or fails."""
     ruckig = pytest.importorskip("ruckig")
-    asked = ruckig.InputParameter(1)
-    for name, state in (("current", start), ("target", finish)):
-        for quantity, value in zip(("position", "velocity", "acceleration"), state, strict=True):
-            setattr(asked, f"{name}_{quantity}", [value])
-    asked.max_velocity, asked.max_acceleration = [sizes.velocity], [sizes.acceleration]
-    asked.max_jerk = [sizes.jerk]
-    found = ruckig.Trajectory(1)
+    asked = ruckig.InputParameter(len(axes))
+    starts, goals, sizes = zip(*axes, strict=True)
+    for name, states in (("current", starts), ("target", goals)):
+        for quantity, values in zip(AxisState._fields, zip(*states, strict=True), strict=True):
+            setattr(asked, f"{name}_{quantity}", values)
+    for quantity in ("velocity", "acceleration", "jerk"):
+        setattr(asked, f"max_{quantity}", [getattr(one, quantity) for one in sizes])
+    found = ruckig.Trajectory(len(axes))
     try:
-        result = ruckig.Ruckig(1).calculate(asked, found)
+        result = ruckig.Ruckig(len(axes)).calculate(asked, found)
     except ruckig.RuckigError:
+        return None
+    except ValueError:  # it found the time, and no motion that takes it
         return None
     return float(found.duration) if result == ruckig.Result.Working else None
 
@@ -56,7 +60,7 @@ def test_s_curves_between_random_states_take_ruckigs_time(count: int) -> None:
     compared = 0
     for k in range(count):
         start, finish, sizes = drawn(rng, k)
-        truth, found = by_ruckig(start, finish, sizes), shortest_s_curve(start, finish, sizes)
+        truth, found = by_ruckig((start, finish, sizes)), shortest_s_curve(start, finish, sizes)
         assert (truth is None) == (found is None), (k, start, finish)
         if found is not None:
             compared += 1
@@ -73,7 +77,9 @@ def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
         start, finish = start._replace(acceleration=0.0), finish._replace(acceleration=0.0)
         one = sizes._replace(jerk=math.inf)
         found = shortest_trapezoid(start, finish, one)
-        assert found.total_time == pytest.approx(by_ruckig(start, finish, one), rel=1e-7, abs=1e-7)
+        assert found.total_time == pytest.approx(
+            by_ruckig((start, finish, one)), rel=1e-7, abs=1e-7
+        )
         if abs(start.velocity) > sizes.velocity:
             continue
         braking = sizes._replace(own=float(rng.uniform(0.2, 3)) * sizes.acceleration)
@@ -83,6 +89,40 @@ def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
         again = shortest_trapezoid(back[0], back[1], swapped)
         assert arrives(forth, finish)
         assert forth.total_time == pytest.approx(again.total_time, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("profile", ["trapezoidal", "s-curve"])
+@pytest.mark.parametrize("count", [60, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_axes_arrive_together_when_those_of_ruckig_do(profile: str, count: int) -> None:
+    """Each keeps its limits on the way, also where it decides nothing."""
+    rng = np.random.default_rng(33)
+    compared = later = 0
+    for k in range(count):
+        axes: list[Axis] = []
+        while len(axes) < 2 + k % 3:
+            start, finish, sizes = drawn(rng, 1 + 2 * k + len(axes))
+            if profile == "trapezoidal":
+                start, finish = start._replace(acceleration=0.0), finish._replace(acceleration=0.0)
+                sizes = sizes._replace(jerk=math.inf)
+            if not axes:  # too near to stop there and go on, so that it cannot wait
+                near = start.position + 0.3 * start.velocity * abs(start.velocity / sizes[1])
+                finish = finish._replace(position=near, velocity=0.9 * start.velocity)
+            if FARTHEST[profile](start, finish, sizes):
+                axes.append((start, finish, sizes))
+        truth, found = by_ruckig(*axes), synchronised(profile, axes)
+        if truth is None:
+            continue
+        compared += 1
+        later += truth > 1.001 * max(by_ruckig(axis) or 0.0 for axis in axes)
+        for (start, finish, sizes), one in zip(axes, found, strict=True):
+            assert one.total_time == pytest.approx(truth, rel=1e-7, abs=1e-7), (k, axes)
+            assert arrives(one, finish)
+            ahead = start.velocity + start.acceleration * abs(start.acceleration) / 2 / sizes.jerk
+            inside = max(abs(start.velocity), abs(ahead)) <= sizes.velocity
+            speeds = [abs(state.velocity) for state in one.corners]
+            assert not inside or max(speeds) <= sizes.velocity * (1 + 1e-6)
+    assert compared > 0.95 * count
+    assert later > 0
 
 
 def test_slowing_down_less_than_speeding_up() -> None:

@@ -26,7 +26,7 @@ WITHIN = np.full((1, 4), 9.0)
 def motion(*laws: AxisProfile) -> ProfileMotion:
     points = [law.start.position for law in laws] + [laws[-1].at(np.inf).position]
     question = ProfileQuestion(np.array(points)[:, None], STILL, WITHIN)
-    return ProfileMotion(question, laws, False)
+    return ProfileMotion(question, tuple((law,) for law in laws), False)
 
 
 def phased(*phases: tuple[float, float, float]) -> AxisProfile:
@@ -94,7 +94,7 @@ def said(
 
 def test_the_goal_is_moved_to_both_sides() -> None:
     study = study_of(said("s-curve", "1.0", [[0, 1]], 1))
-    asked = questions(PrintedRow(study, study.case.claim("t"), study.pairs[0]))
+    asked = questions(PrintedRow(study, study.case.claim("t"), study.pairs[0]), False)
     off = [float(one.points[-1, 0]) - 1.0 for one in asked]
     assert [np.sign(x) for x in off] == [0, -1, 1]
     assert np.abs(off).max() < 1e-11

@@ -32,6 +32,9 @@ def test_runs_are_drawn_against_an_optimum(problem: tg.Problem, best: tg.Solutio
     assert sound(lambda: tg.plot(runs, best.best))
     with pytest.raises(TrajgapError, match=r"give the optimum as well"):
         tg.plot(runs)
+    for asked in (lambda: tg.plot(3), lambda: tg.bench(1, 2), lambda: tg.bench(problem, 2)):
+        with pytest.raises(TrajgapError, match=r"int cannot be drawn|int is not a Problem|2 is no"):
+            asked()
 
 
 def test_a_waterfall() -> None:

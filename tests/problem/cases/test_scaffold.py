@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 from support.refusals import Refusal, each_refusal
 from trajgap.problem.cases.literature import LITERATURE
 from trajgap.problem.cases.load import parse_case
-from trajgap.problem.cases.scaffolding import scaffold
+from trajgap.problem.cases.scaffolding import scaffold, units_in_header
 from trajgap.problem.errors import CaseError
 
 RAD = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
@@ -60,6 +60,9 @@ def test_an_id_and_the_usual_curve(table):
         ("Joint 1 2\nq1 10 30\nq2 20 40\n", ("q1", "q2"), ("1", "2")),
         ("point,1,2\nA,10,20\nB,30,40\n", ("1", "2"), ("A", "B")),
         ("1,2\n10,20\n30,40\n", ("1", "2"), ("1", "2")),
+        ("q1 (°),q2 [deg]\n10,20\n30,40\n", ("q1", "q2"), ("1", "2")),
+        ("θ1 /(°);θ2 (degrees)\n10;20\n30;40\n", ("θ1", "θ2"), ("1", "2")),
+        ("q1 (left),q2 (N)\n10,20\n30,40\n", ("q1 (left)", "q2 (N)"), ("1", "2")),
     ],
 )
 def test_tables_of_many_forms_hold_the_same_way_points(table, text, joints, labels):
@@ -73,6 +76,10 @@ def test_tables_of_many_forms_hold_the_same_way_points(table, text, joints, labe
     # Numbers in their order are names, or a way-point whose header is missing.
     warned = f"{path}: line 1 is read as the names of the joints, 1, 2; if it is a way-point, "
     assert said == ([warned + "put a header above it"] if text.startswith("1") else [])
+    assert units_in_header(path) == ("deg,deg" if "°" in text else "")
+    if "°" in text:
+        with pytest.raises(CaseError, match=r"line 1: states joint .1 in deg, but rad is the unit"):
+            scaffold(path, RAD)
 
 
 names = st.text(st.characters(codec="utf-8", exclude_characters=",;\t\r\n"), min_size=1)

@@ -200,7 +200,7 @@ def test_an_optimum_is_found_where_equal_durations_pass_no_curve() -> None:
     """Most knots lie in the last third of the time, and so must the middle way-point."""
     whole = (0,) * 4 + (0.6, 0.7, 0.8, 0.85, 0.9) + (1,) * 4
     curve = ClampedBSpline(5, 3, "given", "times", knot_vector=whole)
-    with pytest.raises(CurveError):
+    with pytest.raises(CurveError, match=r"\(way-point 3 lies outside"):
         fit(curve, Q, np.ones(4))
     problem = Problem(Q, Limits(2.0, 9.0), curve)
     solution = solve(problem, starts=2)
@@ -323,7 +323,7 @@ PRINTED = {"parameters": "given", "time": "stretched"}
                 "knot_vector": vector(3),
                 "fractions": ((0, 0.01, 0.02, 0.3, 1),),
             },
-            "way-point 2, whose parameter 0.02 (of 0 to 1) does not lie between the knots 0.08 and",
+            "way-point 3, whose parameter 0.02 (of 0 to 1) does not lie between the knots 0.08 and",
         ),
     ],
 )

@@ -58,6 +58,13 @@ def test_numbered_columns_of_velocities_are_no_joints(tmp_path, header):
     assert samples.velocity.tolist() == [[9.0, 8.0], [7.0, 6.0]]
     axes = read_motion(write(tmp_path, "b.csv", f"time,A1,A2,E1,V1\n{rows}")).content
     assert axes.joints == ("A1", "A2", "E1", "V1")
+    for aside in ("q1_effort", "effort_1", "tau1", "current", "Joint 1 torque [Nm]", "jerk_q1"):
+        text = f"time,q1,{aside},q2,current position\n{rows}"
+        found = read_motion(write(tmp_path, "c.csv", text)).content
+        assert found.joints == ("q1", "q2", "current")
+        assert found.position.tolist() == [[1.0, 2.0, 8.0], [3.0, 4.0, 6.0]]
+    with pytest.raises(CaseError, match="no column holds positions"):
+        read_motion(write(tmp_path, "d.csv", f"time,tau1,tau2,effort_1,current\n{rows}"))
 
 
 def test_a_table_without_header_in_units_of_its_own(tmp_path):

@@ -181,6 +181,8 @@ def test_an_audit_of_odd_tables_ends() -> None:
     )
     one = audited_text(one_joint("0, 1", "1.9", "0.99", "optimal", odd))
     assert verdicts(one)["rival"] is ClaimVerdict.NOT_CHECKABLE
+    (rival,) = [j for j in one.judgements if j.claim == "rival"]
+    assert "another curve (straight lines), and no motion is built" in rival.sentences[0]
     assert verdicts(one)["short"] is ClaimVerdict.INCONSISTENT
     assert [w.claim for w in one.waterfalls] == ["d"]
     assert one.errors == 0

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from support.findings import audited_text, finding, study_of, verdicts
-from support.made_up import Numbers, claim, paper, peak, row
+from support.made_up import CUBIC, Numbers, claim, paper, peak, row
 from trajgap.compare.audits import printed_rows
 from trajgap.compare.audits.rules.beside import Beside
 from trajgap.compare.audits.rules.motion_numbers import NAMES, measured
@@ -66,6 +66,30 @@ def test_either_side_of_a_jump_may_be_meant() -> None:
         ((before + after) / 2, ClaimVerdict.INCONSISTENT),
     ):
         assert verdict_of("jerk", place="2", value=f"{value:.2f}") is verdict
+
+
+@pytest.mark.parametrize(
+    ("durations", "time", "value", "verdict"),
+    [
+        # The acceleration jumps from -6 to 12 where the durations meet.
+        ("1.02 1.00", "1.0", "12", "supported"),
+        ("0.98 1.00", "1.0", "-6.2", "supported"),
+        ("1.09 1.00", "1.0", "12", "supported"),  # the instant may be cut off
+        ("1.09 1.00", "0.9", "12", "inconsistent"),
+        ("0.98 1.00", "1.0", "3", "inconsistent"),
+        ("1.00 1.00", "1.0", "3", "inconsistent"),
+        ("1.00 1.00", "0.0", "0", "supported"),  # the arm rests before
+        ("1.00 1.00", "0.0", "6", "supported"),
+        ("1.00 1.00", "0.0", "3", "inconsistent"),
+        ("1.00 1.00", "2.0", "0", "supported"),
+    ],
+)
+def test_a_rounded_instant_may_be_on_either_side_of_a_jump(
+    durations: str, time: str, value: str, verdict: str
+) -> None:
+    one = claim("one", "value", of="d", derivative="acceleration", time=time, value=value)
+    text = paper([[0, 1, 3]], row("d", durations), one, curve=CUBIC, velocity=90)
+    assert finding(text, "one", "TG211").verdict == verdict
 
 
 def test_a_printed_instant_is_an_interval() -> None:

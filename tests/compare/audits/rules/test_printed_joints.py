@@ -42,6 +42,13 @@ def test_the_joint_that_varies_most(other: str, joint: str, verdict: str) -> Non
     assert found.severity is not Severity.ERROR
 
 
+def test_digits_cut_off_towards_zero_may_span_more_around_it() -> None:
+    """Joint 2 spans 30.2 at least, and joint 1 no more than that, or than 30.1."""
+    for own, verdict in (("-10.0 20.0", "not checkable"), ("10.0 40.0", "inconsistent")):
+        found = finding(arm(most(), rows=(own, "20.0 50.3")), "most", "TG110")
+        assert found.verdict == verdict
+
+
 @pytest.mark.parametrize("joint", ["1", "2"])
 def test_a_joint_that_varies_much_is_never_accused(joint: str) -> None:
     found = finding(arm(most(joint, "varies_much")), "most", "TG110")

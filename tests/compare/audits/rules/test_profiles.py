@@ -163,20 +163,40 @@ def test_how_joints_go_together(path: dict[str, str], value: str, verdict: str, 
 
 
 @pytest.mark.parametrize(
-    ("ends", "verdict"),
+    ("ends", "value", "said"),
     [
-        ({"end_derivatives": [0.4]}, ClaimVerdict.NOT_CHECKABLE),
-        ({"finish_derivatives": [[0, 0.3]]}, ClaimVerdict.NOT_CHECKABLE),
-        ({"end_derivatives": ["0.00"]}, ClaimVerdict.INCONSISTENT),
-        ({"end_derivatives": [0]}, ClaimVerdict.INCONSISTENT),
+        # Joint 1 needs 2 s. Joint 2 comes back to its last speed: 0.5 + 1.0056 + 0.575 s.
+        ({"end_derivatives": [[0, -1]]}, "2.00", "supported: fits"),
+        ({"finish_derivatives": [[0, 0.3]]}, "2.08", "supported: fits"),
+        ({"finish_derivatives": [[0, 0.3]]}, "2.00", "inconsistent: is 3.88 % shorter"),
+        ({"finish_derivatives": [[0, 0.3]]}, "2.17", "inconsistent: is 4.30 % longer"),
+        (
+            {"end_derivatives": [["0.100", "-0.300"]]},
+            "2.10",
+            "not checkable: profile on a straight",
+        ),
+        ({"end_derivatives": [["0.100", "-0.300"]]}, "1.85", "inconsistent: is 0.60 % shorter"),
+        ({"end_derivatives": ["0.00"]}, "1.85", "inconsistent: is 7.50 % shorter"),
+        ({"end_derivatives": [0]}, "2.00", "supported: fits"),
     ],
 )
-def test_a_profile_between_moving_ends_is_not_set_beside_one_from_rest_to_rest(
-    ends: dict[str, Any], verdict: ClaimVerdict
+def test_joints_between_moving_ends_arrive_together(
+    ends: dict[str, Any], value: str, said: str
 ) -> None:
-    """From rest 2 s; a motion that starts or ends at speed takes another time, here 1.85 s."""
     curve = {"family": "polynomials", "degrees": [3], "end_orders": [1]} | ends
-    assert judged("trapezoidal", "1.85", TWO, curve, **SLOW).verdict is verdict
+    found = judged("trapezoidal", value, TWO, curve, **SLOW)
+    verdict, words = said.split(": ")
+    assert found.verdict == verdict
+    assert words in found.message
+
+
+def test_a_moving_joint_may_be_too_early_for_the_slowest_one() -> None:
+    """Joint 1 may take up to 0.87 s, and not again before 1.2385 s (ruckig)."""
+    curve = MOVING | {key: [[1, 0], 0] for key in ("end_derivatives", "finish_derivatives")}
+    for value, verdict in (("1.06", "inconsistent"), ("1.24", "supported")):
+        found = judged("s-curve", value, [[0, "0.2000"], [0, "0.7000"]], curve, **ONE)
+        assert found.verdict == verdict
+        assert "Each joint by itself can arrive within 1.06023 s" in found.message
 
 
 def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
@@ -239,6 +259,25 @@ def test_an_optimal_profile_is_the_shortest() -> None:
         own = total("t", value, profile="s-curve", **CLAIM)
         text = paper([[0, 1]], own, sentence("s", "optimal", "t"), curve=QUINTIC, **ONE)
         assert finding(text, "s", "TG304").verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("time", "value", "verdict"),
+    [
+        # 1 rad within 1.9 rad/s and 4 rad/s²: it cruises from 0.475 s to 0.526 s.
+        ("0.5", "4", "supported"),
+        ("0.5", "-4", "supported"),
+        ("0.500", "4", "inconsistent"),
+        ("0.0", "0", "supported"),
+        ("1.5", "0", "supported"),
+        ("1.5", "-4", "inconsistent"),
+    ],
+)
+def test_an_acceleration_may_be_that_of_either_side(time: str, value: str, verdict: str) -> None:
+    own = total("t", "1.00", profile="trapezoidal", **CLAIM)
+    asked = claim("v", "value", of="t", derivative="acceleration", time=time, value=value)
+    text = paper([[0, 1]], own, asked, curve=QUINTIC, velocity="1.90", acceleration=4)
+    assert finding(text, "v", "TG304").verdict == verdict
 
 
 STRAIGHT = {"profile": "trapezoidal", "path": "straight"}
