@@ -25,7 +25,7 @@ TG304 = Explained(
     "Supported within rounding, else inconsistent: the paper may have meant another profile. "
     "Without way-points, several totals are supported if one way serves them all. "
     "Not checkable if the shortest total jumps within the rounding, or for several joints "
-    "between moving ends.",
+    "on a straight line between moving ends.",
     "A motion of 140° within 150 °/s, 70 °/s² and 70 °/s³ takes 4 s if the jerk is constant "
     "in phases.",
     basis=Basis.COMPUTED,

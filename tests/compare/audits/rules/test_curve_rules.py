@@ -206,6 +206,22 @@ def test_a_stretched_curve_is_smooth_only_with_the_proportions_of_its_chords() -
         assert found.kind == kind
 
 
+@pytest.mark.parametrize(
+    ("named", "word"),
+    [
+        ({}, "not checkable"),
+        ({"derivative": "velocity"}, "supported"),
+        ({"derivative": "acceleration"}, "inconsistent"),
+    ],
+)
+def test_a_jump_of_acceleration_contradicts_what_names_it(named: dict[str, str], word: str) -> None:
+    """Cubics that rest at each way-point: the acceleration of both sides has opposite signs."""
+    parts = row("d", "1.00 1.00"), sentence("s", "continuous", "d", **named)
+    text = paper([[0, 1, 2]], *parts, curve={"family": "rest-to-rest", "degree": 3}, velocity=9)
+    (found,) = said_of(study_of(text), "s", "TG202")
+    assert found.verdict == word
+
+
 def test_acceleration_said_to_jump_does_in_the_stretched_reading(motions: list[Finding]) -> None:
     found = {f.reading: f for f in of(motions, "TG206", "acceleration-jumps")}
     assert len(found) == 19
