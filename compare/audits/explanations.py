@@ -16,12 +16,13 @@ from ...problem.cases import (
     ImprovementClaim,
     MaximumClaim,
     MotionValueClaim,
+    PeakClaim,
     TotalTimeClaim,
     motions_of,
 )
 from ..documents import Explanation, Finding, HeldOtherwise, Rounding, Severity, quoted
 from .printed_row import PrintedRow
-from .rules import RuleGroup, count_conditions, held_otherwise
+from .rules import RuleGroup, beside, count_conditions, held_otherwise
 from .slips import Slip, changes_of_motion, durations, misprints, of_rows, totals, values
 from .stated import RowClaim, place
 from .study import Pair, Study
@@ -197,8 +198,28 @@ def explained(
     found: list[Explanation] = []
     if kind == LIMITS and isinstance(claim, RowClaim):
         found += _at_samples(study, claim, finding, under)
+    if isinstance(claim, PeakClaim):
+        found += _of_another_motion(study, claim, finding)
     trial = _Trial(study, groups, finding, claim)
     return (*found, *_by_slips(trial, under, default))
+
+
+def _of_another_motion(study: Study, claim: PeakClaim, finding: Finding) -> Iterator[Explanation]:
+    """Peaks of which more than half are those of other printed durations."""
+    pair, numbers = Pair(str(finding.problem), str(finding.reading)), study.printed_numbers(claim)
+    own = motions_of(study.case.claims, claim)
+    for motion in study.case.claims:
+        if not isinstance(motion, RowClaim) or motion in own or not study.fits(motion, pair):
+            continue
+        row = PrintedRow(study, motion, pair)
+        each = [beside(row, claim, number, joint) for joint, number in numbers]
+        count = sum(one is not None and one.printed_there for one in each)
+        if count > 1 and 2 * count > len(each):
+            yield Explanation(
+                change=f"The peaks may be those of another motion: “{motion.text.rstrip('.')}”.",
+                effect=f"{count} of the {len(each)} printed peaks are that motion's.",
+                settles=count == len(each),
+            )
 
 
 def _at_samples(

@@ -19,8 +19,10 @@ FEW = 2
 
 
 def percent(share: float, form: str = ".3g") -> str:
-    """A share in percent."""
-    return f"{100 * share:{form}} %"
+    """A share in percent, never with an exponent."""
+    rounded = float(f"{100 * share:{form}}")
+    sign = "+" if form.startswith("+") else ""
+    return f"{rounded:{f'{sign}.0f' if abs(rounded) >= 100 else form}} %"
 
 
 def seconds(value: float, form: str = ".6g") -> str:

@@ -21,10 +21,6 @@ Boxes = tuple[RoundingBox, RoundingBox]
 """Durations, shape (segments,), and way-points, shape (way-points, joints)."""
 SAMPLES = (50, 100, 200, 500, 1000)
 """Numbers of samples of which a paper may have taken a mean, with or without the last instant."""
-UNEXPLAINED = (
-    "and neither rounding, cut-off digits nor sampling was found to explain the difference"
-)
-"""Said of a printed number of a motion that is not that of the printed durations."""
 _FACTORS = {
     180 / pi: "as between degrees and radians",
     1000.0: "as a thousandth of the unit",
@@ -127,6 +123,11 @@ class Beside:
         return self.kind in FITS
 
     @property
+    def printed_there(self) -> bool:
+        """Whether the motion's number is the printed one, its digits rounded or cut off."""
+        return self.kind in (Agreement.ROUNDING, Agreement.CUT_OFF)
+
+    @property
     def around(self) -> str:
         """The motion's number with what rounding may change of it."""
         # A reach below the last digit that is shown says nothing.
@@ -139,8 +140,9 @@ class Beside:
             Agreement.ROUNDING: "equal within the rounding of the printed digits",
             Agreement.CUT_OFF: "which fits if digits were cut off instead of rounded",
             Agreement.SAMPLING: f"which {SAMPLES[0]} or more samples of the motion give",
-        }.get(self.kind, UNEXPLAINED)
-        return f"{name} is {self.exact:.6g} {self.unit}, printed as {self.printed}, {how}"
+        }.get(self.kind)
+        said = f"{name} is {self.exact:.6g} {self.unit}, printed as {self.printed}"
+        return said if how is None else f"{said}, {how}"
 
     @property
     def root(self) -> int | None:

@@ -21,7 +21,7 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding
 from ..printed_row import PrintedRow, printed_rows
-from ..rounding import ROUNDING
+from ..rounding import ROUNDING, Agreement
 from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
 from ..words import seconds
@@ -346,6 +346,10 @@ def _found(
         verdict = ClaimVerdict.NOT_CHECKABLE if loose else ClaimVerdict.INCONSISTENT
         # What rounds to derivatives at the ends, knots and parameters is not looked at.
         note = f"{loose} are rounded numbers, which may explain it." if loose else ""
+    open_ = sum(one.kind is Agreement.OFF for one in told)
+    if open_ and not loose:
+        note = "Neither rounding, cut-off digits nor sampling was found to explain the difference"
+        note += "s." if open_ > 1 else "."
     clash = verdict is ClaimVerdict.INCONSISTENT
     return rule.finding(
         row,

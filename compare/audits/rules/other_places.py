@@ -60,7 +60,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     if (motion.id, other) == (own.id, joint):
                         continue
                     there = beside(elsewhere, claim, number, other)
-                    if there is not None and there.fits:
+                    if there is not None and there.printed_there:
                         found.append((abs(there.distance), motion, other))
             if found:
                 distance, motion, other = min(found, key=lambda one: one[0])

@@ -25,7 +25,7 @@ from ..rounding import ROUNDING, Agreement
 from ..stated import DERIVATIVES, place
 from ..study import Study
 from ..words import percent
-from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change, split
+from .beside import SAMPLES, Beside, Look, largest_change, split
 from .rule_group import Explained, rule_group
 
 _PHASES = 8
@@ -237,7 +237,7 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
             Agreement.NORM: f" ({away}), {norm}",
             Agreement.UNIT: f" ({away}); their ratio is near {one.factor}",
             Agreement.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
-            Agreement.OFF: f" ({away}), {UNEXPLAINED}",
+            Agreement.OFF: f" ({away})",
         }[one.kind]
     )
 
