@@ -7,12 +7,14 @@ import itertools
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterable
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from ...problem import TrajgapError
 from ...verify import CUT, LEAF, OPEN
 from .crew import Common, ProofPiece
-from .session import Session
+
+if TYPE_CHECKING:
+    from .session import Session
 
 B = TypeVar("B")
 

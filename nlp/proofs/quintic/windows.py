@@ -15,8 +15,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
-from scipy.sparse import block_diag, eye_array, kron
 
 from ....problem import Array
 from ....verify import WINDOW_UNIT
@@ -68,6 +66,10 @@ def window(steps: Array, durations: Array, limits: Array) -> list[list[int]]:
         The segments + 1 numbers ψ, then the segments numbers c, in units of 1/`WINDOW_UNIT`; empty
         for a joint that has none.
     """
+    # Processes that search boxes need none of it: it takes longer to import than all the rest.
+    from scipy.optimize import linprog
+    from scipy.sparse import block_diag, eye_array, kron
+
     n, joints = steps.shape
     rows = _conditions(n)
     free, limited = 2 * n + 1, np.isfinite(limits)

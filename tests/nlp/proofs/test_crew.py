@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -139,3 +140,12 @@ def test_no_other_proof_does(problem: Problem, subject: Subject, gap: float) -> 
     shared = certify(problem, subject=subject, gap=gap, workers=3)
     assert proof(shared) == proof(alone)
     assert (shared.nodes, shared.durations) == (alone.nodes, alone.durations)
+
+
+def test_a_process_that_searches_boxes_imports_no_solver():
+    program = (
+        "import sys, trajgap.nlp.proofs.quintic.curves, trajgap.nlp.proofs.declared.search;"
+        "print({'scipy', 'casadi', 'pydantic'} & set(sys.modules))"
+    )
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ran.stdout, ran.returncode) == ("set()\n", 0)
