@@ -152,6 +152,11 @@ def _at_ratios(problem: Problem) -> Solution:
 
 def _solve(problem: Problem, ask: _Ask) -> Solution:
     """`solve` where no elementary argument decides."""
+    curve = problem.curve.polynomial_form()
+    if curve is not problem.curve:
+        answer = _solve(replace(problem, curve=curve), ask)
+        verdict = check(problem, answer.durations) if answer.found else None
+        return replace(answer, problem=problem, check=verdict)
     smooth = smoother(problem)
     if smooth is not None:
         found = as_answer(problem, _solve_smoother(problem, smooth, ask))
