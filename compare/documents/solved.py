@@ -81,7 +81,7 @@ class Answer(Entry):
     active: tuple[ActiveLimit, ...]
     starts: Count
     starts_at_best: Count
-    """Starts that ended at the best total."""
+    """Starts that ended at the best total, or came near one that did."""
     build_seconds: float
     solve_seconds: float
     toppra: OrWhy[tuple[RetimedPath, ...]]

@@ -191,13 +191,16 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
 def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
     """Local optima of all starts, above the floors; starts that end together are kept apart."""
     box = box_above(problem, floor)
+    ends: dict[Descent, Local] = {}
     found: list[Local] = []
     for start in points:
         if found and time_up():
             break
-        local = as_local(problem, descend(problem, start, box))
+        end = descend(problem, start, box, ends, EVOLUTION.apart)
+        local = replace(ends[end], iterations=0) if end in ends else as_local(problem, end)
         if local is not None:
             found.append(local)
+            ends |= {end: local} if end.converged else {}
     return found
 
 

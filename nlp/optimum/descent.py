@@ -7,6 +7,7 @@ where durations differ by many powers of ten, because logarithms do not see the 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -170,10 +171,14 @@ class Descent:
         return self.excess <= KEPT
 
 
-def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
+def descend(
+    problem: Problem, start: Array, box: LogBox, ends: Iterable[Descent] = (), near: float = 0.0
+) -> Descent:
     """Shorten a motion within its limits until no step gains.
 
-    The curve is a determined one of any kind; the start, s, need not keep the limits.
+    The curve is a determined one of any kind; the start, s, need not keep the limits. The answer is
+    one of the ends of earlier descents where a motion that is no shorter comes near to it, each
+    duration within a factor of e to the power of ``near``.
     """
     rows = _onto_limits(problem, start, box)
     if rows.worst > KEPT:
@@ -186,6 +191,10 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
     for taken in range(1, STEPS + 1):
         if time_up():
             break
+        for end in ends:
+            away = np.abs(np.log(end.durations / rows.durations)).max()
+            if away <= near and end.durations.sum() <= total:
+                return end
         slope = rows.durations / total
         matrix, room = _walled(rows, box, radius)
         found = least_point(hessian, slope, matrix, np.maximum(room, 0.0))

@@ -162,7 +162,7 @@ class Solution(SearchResult):
     active : tuple of Active
         Limits that are reached, with multipliers and sensitivities.
     starts, starts_at_best : int
-        Starts of the solver, and how many ended within 1e-6 (relative) of the best.
+        Starts, and how many ended within 1e-6 (relative) of the best or came near one that did.
     iterations : int
         Solver iterations over all starts.
     build_seconds : float

@@ -154,6 +154,11 @@ def _at_ratios(problem: Problem) -> Solution:
 
 def _solve(problem: Problem, ask: _Ask) -> Solution:
     """`solve` where no elementary argument decides."""
+    curve = problem.curve.polynomial_form()
+    if curve is not problem.curve:
+        answer = _solve(replace(problem, curve=curve), ask)
+        verdict = check(problem, answer.durations) if answer.found else None
+        return replace(answer, problem=problem, check=verdict)
     many = problem.curve.free or problem.segments > DENSE
     if problem.limits.braking.any() and (many or (forbidden_jumps(problem) and not apart(problem))):
         return _in_narrow_limits(problem, ask)

@@ -276,7 +276,7 @@ def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Arr
     found = _joined(splines_of(curve, wide, long))
     degrees = (curve.degree,) * found.lengths.size
     trajectory = Trajectory(found.lengths, found.scaled, degrees)
-    return Enclosed(trajectory, value_errors(trajectory, found.error))
+    return Enclosed(trajectory, lambda: value_errors(trajectory, found.error))
 
 
 def _knots_of(

@@ -224,7 +224,7 @@ class Interpolant(Curve):
             values = right_hand_sides(self, waypoints, nodal)
             scaled, error = refined_coefficients(self.layout, values, durations, extended)
             trajectory = Trajectory(durations, scaled, self.degrees)
-            return Enclosed(trajectory, value_errors(trajectory, error))
+            return Enclosed(trajectory, partial(value_errors, trajectory, error))
 
         if self.coefficients <= DENSE_UNKNOWNS:
             return found(True)

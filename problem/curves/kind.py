@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,15 +42,20 @@ class Enclosed:
     Attributes
     ----------
     trajectory : Trajectory
-    error : ndarray, shape (pieces, 5, joints)
-        Bound on the error of any extremum of derivative 0 to 4 on a piece.
+    bound : callable
+        Computes `error`, which `fit` does without.
     closer : callable, optional
         Makes the same with a closer bound, at some cost; None if there is none.
     """
 
     trajectory: Trajectory
-    error: Array
+    bound: Callable[[], Array]
     closer: Callable[[], Enclosed] | None = None
+
+    @cached_property
+    def error(self) -> Array:
+        """Bound on that of any extremum of derivative 0 to 4, shape (pieces, 5, joints)."""
+        return self.bound()
 
 
 @dataclass(frozen=True, eq=False)

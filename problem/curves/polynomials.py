@@ -64,8 +64,8 @@ def following(numerator: Numbers, clock: Numbers, order: int, sign: int = -1) ->
     coefficients are absolute ones.
     """
     speed, bend = derived(clock, 1), derived(clock, 2)
-    turned = _product(derived(numerator, 1), speed)
-    found = turned + sign * (2 * order - 1) * _product(numerator, bend)
+    found = sign * (2 * order - 1) * _product(numerator, bend)
+    found += _product(derived(numerator, 1), speed)
     # The leading terms of q″t′ and q′t″ cancel for two cubics.
     return np.asarray(found[:3] if order == 1 and sign < 0 else found)
 
@@ -99,28 +99,28 @@ def tops(a: Array, side: float, clock: Clock | None = None, caps: Array | None =
     def sized(value: Array) -> Array:
         return np.abs(value) if side == 0.0 else side * value
 
+    least = np.array(1.0)
     if clock is None:
-        least = np.array(1.0)
-        found = sized(np.stack([a[0], a.sum(axis=0)])).max(axis=(0, 2))
+        edges = np.stack([a[0], a.sum(axis=0)])
     else:
         time, order, slowest = clock
-        speed, least = derived(time, 1), slowest ** (2 * order - 1)
-        shape = np.broadcast_shapes(a.shape[1:], time.shape[1:])
-        a, time = (np.broadcast_to(of, (len(of), *shape)) for of in (a, time))
-        edges = np.stack([np.zeros(shape), np.ones(shape)])
-        found = sized(in_time(a, speed, order, edges)).max(axis=(0, 2))
+        least = slowest ** (2 * order - 1)
+        edges = in_time(a, derived(time, 1), order, np.array([0.0, 1.0]).reshape(2, 1, 1, 1))
+    # One axis is gone through far quicker than two.
+    found = sized(edges).max(axis=0).max(axis=1)
     bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
     open_ = ~(bound < found[:, None] * least) | ~(found[:, None] >= 0.0)
     if caps is not None:
         open_ &= ~(bound < (1.0 - CAPPED) * caps * least)
         open_ &= ~beyond(found, caps)[:, None, None]
-    part = a[:, open_]
+    part = np.broadcast_to(a, (len(a), *open_.shape))[:, open_]
     if clock is None:
         places = roots_in_unit(derived(part, 1))
         values = valued(part, places)
     else:
-        places = roots_in_unit(following(part, time[:, open_], order))
-        values = in_time(part, derived(time[:, open_], 1), order, places)
+        time = np.broadcast_to(time, (len(time), *open_.shape))[:, open_]
+        places = roots_in_unit(following(part, time, order))
+        values = in_time(part, derived(time, 1), order, places)
     inner = np.where(np.isnan(places), -np.inf, sized(values))
     vector, _, joint = np.nonzero(open_)
     np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))

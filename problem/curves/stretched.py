@@ -87,7 +87,7 @@ class StretchedCurve(Curve):
         form = shape_of(self, waypoints)
         lengths = durations[form.segment] * form.share
         found = Trajectory(lengths, form.scaled, (form.degree,) * lengths.size)
-        return Enclosed(found, value_errors(found, form.error))
+        return Enclosed(found, lambda: value_errors(found, form.error))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """How far each segment goes when its duration is 1 s, which is all that a batch needs."""

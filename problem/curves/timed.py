@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -228,7 +228,7 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
         )
     lengths = np.diff(np.append(clock[:, 0], clock[-1].sum()))
     found = ClockedTrajectory(lengths, scaled, (3,) * len(clock), clock)
-    return Enclosed(found, _errors(found, error, clock_error))
+    return Enclosed(found, partial(_errors, found, error, clock_error))
 
 
 def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array:

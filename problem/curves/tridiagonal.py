@@ -106,4 +106,4 @@ def tridiagonal_fit(ends: tuple[Derivatives, Derivatives], q: Array, h: Array) -
     bounds = value_errors(Trajectory(h, sizes.T[:, :, None], degrees), errors.T[:, :, None])
     error = _MORE * (bounds + moved.T[:, :, None]) * speed
     error[:, 0] += 32.0 * _EPS * np.abs(q[:-1])
-    return Enclosed(Trajectory(h, scaled.transpose(1, 0, 2), degrees), error)
+    return Enclosed(Trajectory(h, scaled.transpose(1, 0, 2), degrees), lambda: error)

@@ -8,7 +8,15 @@ import pytest
 from support.b_splines import clamped, uniform
 from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
-from trajgap.problem import Limits, Verdict, evaluate, load_case, solve_in_closed_form
+from trajgap.problem import (
+    Limits,
+    Verdict,
+    check,
+    evaluate,
+    load_case,
+    quintic_spline,
+    solve_in_closed_form,
+)
 
 POLISH = "irb1600-ga-cubic-bspline"
 BEST = {
@@ -122,3 +130,13 @@ def test_each_joint_by_itself() -> None:
     assert "piecewise polynomials only" in str(answer.why)
     longest = np.max([s.durations for s in answer.joints], axis=0)
     np.testing.assert_allclose(answer.durations, longest)
+
+
+def test_a_b_spline_with_knots_at_the_way_points_is_solved_as_a_polynomial_spline() -> None:
+    problem, _ = clamped((5, "waypoints", "times", "timed"), count=5)
+    solution = solve(problem)
+    spline = solve(replace(problem, curve=quintic_spline(4)))
+    assert solution.status is spline.status is Status.CONVERGED
+    assert solution.problem is problem
+    assert solution.check.peaks == check(problem, solution.durations).peaks
+    assert solution.total_time == pytest.approx(spline.total_time, rel=1e-12)

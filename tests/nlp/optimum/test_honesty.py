@@ -241,6 +241,11 @@ def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
     assert ended.feasible
     assert ended.converged
     assert ended.durations.sum() == pytest.approx(6.776743, abs=1e-5)
+    # A second one that comes near a shorter end takes it over; a longer one is passed by.
+    assert descend(problem, start, box, [ended], near=0.3) is ended
+    longer = replace(ended, durations=1.05 * ended.durations)
+    again = descend(problem, start, box, [longer], near=0.3)
+    assert again.durations.sum() == pytest.approx(ended.durations.sum(), rel=1e-12)
 
 
 def bent_valley() -> Problem:

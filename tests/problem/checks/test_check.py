@@ -191,7 +191,9 @@ def test_what_a_wide_bound_leaves_open_a_closer_one_decides(
     def widened(self, *given):
         found = enclosed(self, *given)
         error = found.error + blur * (np.arange(5) == order)[:, None]
-        return dataclasses.replace(found, error=error, closer=lambda: asked.append(1) or found)
+        return dataclasses.replace(
+            found, bound=lambda: error, closer=lambda: asked.append(1) or found
+        )
 
     monkeypatch.setattr(Interpolant, "enclosed", widened)
     again = check(problem, [1.0, 0.7])
