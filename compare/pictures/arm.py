@@ -100,17 +100,15 @@ def arm_picture(
         },
         separators=(",", ":"),
     )
-    style, controls, script = (_static(f"arm{end}") for end in (".css", "_controls.html", ".js"))
+    static = Path(__file__).parent / "static"
+    names = ("arm.css", "arm_controls.html", "arm.js")
+    style, controls, script = ((static / one).read_text(encoding="utf-8") for one in names)
     return (
         f'<figure class="trajgap-arm" id="{name}">\n<style>\n{style}</style>\n'
         f"<figcaption>{escape(visible(title))}</figcaption>\n"
         f'<div class="trajgap-arm-panels">\n{panels}</div>\n{controls}'
         f'<script type="application/json">{data}</script>\n<script>\n{script}</script>\n</figure>\n'
     )
-
-
-def _static(name: str) -> str:
-    return (Path(__file__).parent / "static" / name).read_text(encoding="utf-8")
 
 
 @dataclass
