@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from dataclasses import dataclass
 
-import typer
+from .options import Options, option
 
 
-def app(
-    port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port on this machine; 0 for any free one.")
-    ] = 8350,
-    browser: Annotated[bool, typer.Option(help="Open the form in the browser.")] = True,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class FormOptions(Options):
+    """Where the form is."""
+
+    port: int = option("", 8350, min=0, max=65535)
+    """Port on this machine; 0 for any free one."""
+    browser: bool = option("", True, "--browser/--no-browser")
+    """Open the form in the browser."""
+
+
+def app(form: FormOptions) -> int:
     """Open a form in the browser.
 
     It audits a table of way-points, or checks a motion. The form runs on this machine alone;
@@ -23,10 +28,10 @@ def app(
     from ..app import make_server
     from .output import say
 
-    server = make_server(port)
+    server = make_server(form.port)
     address = f"http://{server.host}:{server.port}/"
     say(f"{address}  (stop with Ctrl+C)\n")
-    if browser:
+    if form.browser:
         webbrowser.open(address)
     try:
         server.serve_forever()

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
-
-import typer
+from typing import Any
 
 from ...problem import Case, published_ids
 from .. import audits, pages
@@ -34,83 +32,57 @@ from ..documents import (
 )
 from .certifying import read_certificates
 from .input import read_cases
-from .options import NoCache, ProblemId, ReadingId, count
+from .options import CacheOptions, ExitCode, Options, PartOptions, argument, count, option
 from .output import emit, kept_proofs, new_output, progress, say
 
 
-def audit(
-    cases: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[CASE|FILE]...",
-            help="Ids of published cases, or case files; all published ones by default.",
-        ),
-    ] = None,
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    seeds: Annotated[int, count("Number of seeds for each replay.", least=2)] = 100,
-    workers: Annotated[
-        int | None,
-        count(
-            "Number of processes for the replays; the result does not depend on it. Starting a "
-            "process takes longer than a hundred short replays.",
-            show_default="all cores; 1 for short replays",
-        ),
-    ] = None,
-    certify_seconds: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS",
-            min=0.0,
-            help="Time per case to certify optima that no certificate proves; 0 for none. "
-            "By default boxes are counted, so no verdict depends on the machine.",
-        ),
-    ] = None,
-    certificates: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Certificates to use in addition to the shipped ones; each is verified.",
-        ),
-    ] = None,
-    draft: Annotated[
-        bool,
-        typer.Option(
-            "--draft", help="Judge your own draft, and list what to change before you submit it."
-        ),
-    ] = False,
-    no_cache: NoCache = False,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
-    ] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write pages only with --out.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Folder for the pages: new, empty, or that of an earlier audit.",
-            show_default="trajgap-audit",
-        ),
-    ] = None,
-    crate: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE.zip",
-            help="Also write an RO-Crate for archives to this new file: case files, pages, JSON, "
-            "certificates and environment.",
-        ),
-    ] = None,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class AuditingOptions(PartOptions):
+    """What is audited, and how much is computed for it."""
+
+    cases: list[str] | None = argument("[CASE|FILE]...", None)
+    """Ids of published cases, or case files; all published ones by default."""
+    seeds: int = count(100, least=2)
+    """Number of seeds for each replay."""
+    workers: int | None = count(usual="all cores; 1 for short replays")
+    """Number of processes for the replays; the result does not depend on it. Starting a process
+    takes longer than a hundred short replays."""
+    certify_seconds: float | None = option("SECONDS", min=0.0)
+    """Time per case to certify optima that no certificate proves; 0 for none. By default boxes are
+    counted, so no verdict depends on the machine."""
+    certificates: Path | None = option("FOLDER")
+    """Certificates to use in addition to the shipped ones; each is verified."""
+    draft: bool = option("", False)
+    """Judge your own draft, and list what to change before you submit it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PageOptions(Options):
+    """What comes of it."""
+
+    strict: bool = option("", False)
+    """Exit with 1 if a finding has severity error."""
+    as_json: bool = option("", False, "--json")
+    """Print JSON; write pages only with --out."""
+    out: Path | None = option("FOLDER", usual="trajgap-audit")
+    """Folder for the pages: new, empty, or that of an earlier audit."""
+    crate: Path | None = option("FILE.zip")
+    """Also write an RO-Crate for archives to this new file: case files, pages, JSON, certificates
+    and environment."""
+
+
+def audit(asked: AuditingOptions, kept: CacheOptions, to: PageOptions) -> int:
     """Audit every claim of the cases, and write pages with pictures."""
-    chosen = read_cases(cases or published_ids())
+    chosen = read_cases(asked.cases or published_ids())
+    names = ("seeds", "problem", "reading")
+    part: dict[str, Any] = {name: getattr(asked, name) for name in names}
     for case in chosen:
-        study = Study(case, seeds=seeds, problem=problem, reading=reading)
+        study = Study(case, **part)
         for algorithm in case.algorithms:
             study.algorithm(algorithm.id)
+    certificates, crate, as_json = asked.certificates, to.crate, to.as_json
     given = [] if certificates is None else read_certificates(certificates)
-    folder = out if out is not None or as_json else Path("trajgap-audit")
+    folder = to.out if to.out is not None or as_json else Path("trajgap-audit")
     if folder is not None:
         pages.check_report_folder(folder, chosen)
     if crate is not None:
@@ -118,19 +90,17 @@ def audit(
     with new_output(crate, "--crate") as bundle, progress("audit") as step:
         report = audits.audit(
             chosen,
-            seeds=seeds,
-            workers=workers,
-            problem=problem,
-            reading=reading,
+            **part,
+            workers=asked.workers,
             progress=step,
-            certify_seconds=certify_seconds,
+            certify_seconds=asked.certify_seconds,
             certificates=given,
             # Where an absolute folder lies is nobody's business.
             certificates_folder=None
             if certificates is None
             else str(certificates.name if certificates.is_absolute() else certificates),
-            draft=draft,
-            cache=not no_cache,
+            draft=asked.draft,
+            cache=not kept.no_cache,
         )
         if folder is not None:
             step("pages and pictures")
@@ -144,7 +114,7 @@ def audit(
         say(f"pages: {folder / 'index.html'}\n")
     if report.kept and not as_json:
         say(kept_proofs(report.kept))
-    return 1 if strict and report.errors else 0
+    return ExitCode.AGAINST if to.strict and report.errors else 0
 
 
 def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:

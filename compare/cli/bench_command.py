@@ -6,10 +6,10 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import MISSING, dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
@@ -23,101 +23,72 @@ from ..audits import asked_as
 from ..blocks import ONE_BY_ONE, Block, Prose, bench_blocks, brief_board, overall_blocks
 from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, noted
 from .input import Selected, naming, read_case, select
-from .options import ExitCode, Options, ProblemId, count, run_store, run_workers
+from .options import ExitCode, Options, argument, count, option
 from .output import emit, progress, rendered, say
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
+class BenchOptions(Options):
+    """The problem and the optimisers."""
+
+    case: str | None = argument(
+        "CASE|FILE|SUITE", None, usual="with --against: all instances of the leaderboard"
+    )
+    """Id of a published case, a case file, suite:NAME, several as suite:A,B or suite:353-*, or
+    suite for all."""
+    optimizer: list[str] = option("A,B,...", MISSING)
+    """The papers' pso, mnam-pso, ga, woa..., or scipy:differential_evolution, mealpy:OriginalWOA,
+    pymoo:DE, pygmo:sade, cma, or your own module:function."""
+    settings: list[str] | None = option("NAME=JSON", None, "--set")
+    """Settings of an optimiser: pso='{"particles": 20}'. Else the paper's."""
+    problem: str | None = option("ID")
+    """Only this problem of the case."""
+    reading: str | None = option("ID")
+    """Use this reading instead of the default one."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class RunOptions(Options):
     """How each optimiser is run."""
 
-    seeds: Annotated[
-        int | None,
-        count("Number of runs of each optimiser.", show_default="30; 15 with --against"),
-    ] = None
-    budget: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=10**7,
-            help="Number of evaluations of each run.",
-            show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
-        ),
-    ] = None
-    handling: Annotated[
-        str,
-        typer.Option(
-            metavar="death-penalty|stretch|rescale",
-            help="Treatment of durations that break a limit.",
-        ),
-    ] = "death-penalty"
-    baselines: Annotated[
-        bool,
-        typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
-    ] = True
-    seconds: Annotated[
-        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
-    ] = gaps.SECONDS
-    workers: Annotated[int, run_workers()] = 1
-    store: Annotated[Path | None, run_store()] = None
+    seeds: int | None = count(usual="30; 15 with --against")
+    """Number of runs of each optimiser."""
+    budget: int | None = option(
+        "", min=1, max=10**7,
+        usual="6000; a paper's algorithm makes its own iterations; 1000 with --against",
+    )  # fmt: skip
+    """Number of evaluations of each run."""
+    handling: str = option("death-penalty|stretch|rescale", "death-penalty")
+    """Treatment of durations that break a limit."""
+    baselines: bool = option("", True, "--baselines/--no-baselines")
+    """Random search, equal durations, local searches, CMA-ES with repair."""
+    seconds: float = option("SECONDS", gaps.SECONDS, "--time", min=0.001)
+    """Time limit of each run."""
+    workers: int = count(1)
+    """Number of processes; the rows do not depend on it."""
+    store: Path | None = option("FILE")
+    """File that keeps finished runs; these are not repeated."""
 
 
-def bench(
-    case: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="CASE|FILE|SUITE",
-            help="Id of a published case, a case file, suite:NAME, several as suite:A,B or "
-            "suite:353-*, or suite for all.",
-            show_default="with --against: all instances of the leaderboard",
-        ),
-    ] = None,
-    *,
-    optimizer: Annotated[
-        list[str],
-        typer.Option(
-            metavar="A,B,...",
-            help="The papers' pso, mnam-pso, ga, woa..., or scipy:differential_evolution, "
-            "mealpy:OriginalWOA, pymoo:DE, pygmo:sade, cma, or your own module:function.",
-        ),
-    ],
-    settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NAME=JSON",
-            help="Settings of an optimiser: pso='{\"particles\": 20}'. Else the paper's.",
-        ),
-    ] = None,
-    problem: ProblemId = None,
-    reading: Annotated[
-        str | None,
-        typer.Option(
-            "--reading", metavar="ID", help="Use this reading instead of the default one."
-        ),
-    ] = None,
-    run: RunOptions,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Folder for the page: new, empty, or that of an earlier bench, which is replaced.",
-            show_default="trajgap-bench",
-        ),
-    ] = None,
-    against: Annotated[
-        str | None,
-        typer.Option(
-            metavar="leaderboard", help="Show where the optimisers rank among committed results."
-        ),
-    ] = None,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class ReportOptions(Options):
+    """How the result is shown."""
+
+    as_json: bool = option("", False, "--json")
+    """Print JSON; write a page only with --out."""
+    out: Path | None = option("FOLDER", usual="trajgap-bench")
+    """Folder for the page: new, empty, or that of an earlier bench, which is replaced."""
+    against: str | None = option("leaderboard")
+    """Show where the optimisers rank among committed results."""
+
+
+def bench(question: BenchOptions, run: RunOptions, shown: ReportOptions) -> int:
     """Show how far optimisers end from the optimum of a case or suite."""
-    chosen = [optimizer_name(name) for text in optimizer for name in text.split(",") if name]
-    set_here = _settings(settings or [])
+    case, problem, reading = question.case, question.problem, question.reading
+    as_json, out, against = shown.as_json, shown.out, shown.against
+    named = (name for text in question.optimizer for name in text.split(","))
+    chosen = [optimizer_name(name) for name in named if name]
+    set_here = _settings(question.settings or [])
     if against is not None:
         unused = {"--json": as_json, "--out": out, "--problem": problem, "--reading": reading}
         for name, value in unused.items():

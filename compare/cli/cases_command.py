@@ -6,10 +6,10 @@ from ...problem import published_ids
 from ..blocks import Block, table
 from ..documents import CasesDocument, cases_document
 from .input import read_case
-from .output import Answering
+from .output import AnswerOptions
 
 
-def cases(to: Answering) -> int:
+def cases(to: AnswerOptions) -> int:
     """List the published cases."""
     to.answer(lambda: cases_document(map(read_case, published_ids())), _table)
     return 0

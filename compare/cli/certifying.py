@@ -10,9 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from types import FrameType
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import StateFile, certificate_text, covered, fits, read_state, state_document
@@ -34,9 +32,9 @@ from ..blocks import Block, Prose
 from ..documents import CertifiedResult, CertifyDocument, Why, certify_result, json_text
 from .input import Selected, naming, select
 from .motion_results import by_question
-from .options import ExitCode, Options, Selection, count
+from .options import ExitCode, Options, SelectOptions, count, option
 from .output import (
-    Answering,
+    AnswerOptions,
     Steps,
     check_certificates,
     emit,
@@ -49,50 +47,20 @@ from .output import (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ProofOptions(Options):
     """What a proof is asked for."""
 
-    gap: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            metavar="G",
-            help="With --certify: relative width to reach.",
-            show_default="1e-6",
-        ),
-    ] = None
-    any_curve: Annotated[
-        bool,
-        typer.Option(
-            "--any-curve",
-            help="With --certify: prove a bound for every motion through the way-points, on any "
-            "curve.",
-        ),
-    ] = False
-    certificates: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="With --certify: folder for certificates and for states of stopped runs.",
-            show_default="trajgap-certificates; none with --json",
-        ),
-    ] = None
-    resume: Annotated[
-        list[Path] | None,
-        typer.Option(
-            metavar="FILE",
-            help="With --certify: continue from this state file, which is verified. May be "
-            "repeated.",
-        ),
-    ] = None
-    workers: Annotated[
-        int | None,
-        count(
-            "With --certify: number of cores for the proof; the result does not depend on it.",
-            show_default="all cores",
-        ),
-    ] = None
+    gap: float | None = option("G", min=0.0, usual="1e-6")
+    """With --certify: relative width to reach."""
+    any_curve: bool = option("", False)
+    """With --certify: prove a bound for every motion through the way-points, on any curve."""
+    certificates: Path | None = option("FOLDER", usual="trajgap-certificates; none with --json")
+    """With --certify: folder for certificates and for states of stopped runs."""
+    resume: list[Path] | None = option("FILE")
+    """With --certify: continue from this state file, which is verified. May be repeated."""
+    workers: int | None = count(usual="all cores")
+    """With --certify: number of cores for the proof; the result does not depend on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,11 +94,11 @@ class Question:
 
 def certify_case(
     case: Case,
-    chosen: Selection,
+    chosen: SelectOptions,
     proof: ProofOptions,
     seconds: float,
     seed: int,
-    to: Answering,
+    to: AnswerOptions,
     cache: bool = True,
 ) -> int:
     """Prove an interval of the optimum of each selected problem and reading."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Annotated
+from dataclasses import dataclass
 
 import typer
 
@@ -27,8 +27,8 @@ from ..documents import (
 from .input import Selected, duration_box, naming, read_case, read_durations, select
 from .motion_checking import MotionOptions, check_file
 from .motion_results import by_result, place, reasons
-from .options import Selection
-from .output import Answering, progress
+from .options import Options, SelectOptions, argument, option
+from .output import AnswerOptions, progress
 
 
 class MissingOption(typer.BadParameter):
@@ -39,28 +39,24 @@ class MissingOption(typer.BadParameter):
         return self.message
 
 
+@dataclass(frozen=True, kw_only=True)
+class CheckOptions(Options):
+    """What is judged."""
+
+    case: str = argument("CASE|FILE")
+    """A motion: .csv, .parquet, .json, .yaml or a rosbag. With --durations: the id of a published
+    case, suite:NAME, or a case file."""
+    durations: str | None = option("0.961,1.258,1.078")
+    """For a case: segment durations as printed, in the case's unit of time (s if it states none).
+    Each number counts as rounded to its digits."""
+
+
 def check(
     context: typer.Context,
-    case: Annotated[
-        str,
-        typer.Argument(
-            metavar="CASE|FILE",
-            help="A motion: .csv, .parquet, .json, .yaml or a rosbag. With --durations: the id of "
-            "a published case, suite:NAME, or a case file.",
-        ),
-    ],
-    durations: Annotated[
-        str | None,
-        typer.Option(
-            metavar="0.961,1.258,1.078",
-            help="For a case: segment durations as printed, in the case's unit of time (s if it "
-            "states none). Each number counts as rounded to its digits.",
-        ),
-    ] = None,
-    *,
-    chosen: Selection,
+    asked: CheckOptions,
+    chosen: SelectOptions,
     motion: MotionOptions,
-    to: Answering,
+    to: AnswerOptions,
 ) -> int:
     """Judge a motion, or a case's durations, against limits.
 
@@ -72,10 +68,11 @@ def check(
     """
     if math.isnan(motion.tolerance):
         raise typer.BadParameter("--tolerance is not a number; give one from 0 to 1")
-    if durations is not None:
+    case = asked.case
+    if asked.durations is not None:
         for name in motion.given:
             raise typer.BadParameter(f"{name} is for a motion, but --durations is for a case")
-        return _check_durations(case, durations, chosen, to)
+        return _check_durations(case, asked.durations, chosen, to)
     for name in chosen.given:
         raise typer.BadParameter(f"{name} is for a case, which needs --durations")
     if case in published_ids() or case.startswith("suite:") or case.endswith(".toml"):
@@ -83,7 +80,7 @@ def check(
     return check_file(case, motion, to)
 
 
-def _check_durations(source: str, text: str, chosen: Selection, to: Answering) -> int:
+def _check_durations(source: str, text: str, chosen: SelectOptions, to: AnswerOptions) -> int:
     """Judge printed durations under each selected problem and reading."""
     case = read_case(source)
     selected = select(case, chosen.problem, chosen.reading, chosen.coupling)

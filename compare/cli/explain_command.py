@@ -3,37 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Annotated
-
-import typer
 
 from ...problem import CaseError
 from .. import pages
 from ..audits import EXPLAINED, RULES
 from ..blocks import Block, Prose, table
 from ..documents import ExplainDocument, ExplainedRule, ExplainedWord
-from .output import Answering
+from .options import Options, argument
+from .output import AnswerOptions
 
 
-def explain(
-    asked: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[RULE|WORD]...",
-            help="For example TG201 or certified; all are listed by default.",
-        ),
-    ] = None,
-    *,
-    to: Answering,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class ExplainOptions(Options):
+    """What is to be explained."""
+
+    names: list[str] | None = argument("[RULE|WORD]...", None)
+    """For example TG201 or certified; all are listed by default."""
+
+
+def explain(asked: ExplainOptions, to: AnswerOptions) -> int:
     """Explain a rule or a word of the reports.
 
     A rule is explained with what it may conclude and an example. Without an argument, everything
     that can be explained is listed.
     """
-    summary = _in_full if asked else _listed
-    to.answer(lambda: _document(asked or []), summary)
+    summary = _in_full if asked.names else _listed
+    to.answer(lambda: _document(asked.names or []), summary)
     return 0
 
 

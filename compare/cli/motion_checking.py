@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated, TypeVar
+from typing import TypeVar
 
 import numpy as np
-import typer
 
 from ...problem import CaseError, TrajgapError, Verdict, read_float
 from ...problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits, read_urdf
@@ -31,81 +30,43 @@ from ...problem.motions import (
 from ..documents import MotionCheckDocument, OrWhy, RepairedMotion, Why, json_text, known
 from .input import naming
 from .motion_results import checked_motion, shown_check
-from .options import LimitOptions
-from .output import Answering, emit, new_output
+from .options import LimitOptions, option
+from .output import AnswerOptions, emit, new_output
 
 _STANDING = float(np.finfo(np.float32).eps)
 """Velocity up to which ros2_control takes the last point of a goal to rest, rad/s or m/s."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MotionOptions(LimitOptions):
     """What the command line says of a motion, its limits, and what to do with it."""
 
-    interpolation: Annotated[
-        str | None,
-        typer.Option(
-            metavar="WORD",
-            help="Interpolation between samples: none, linear, cubic, quintic, spline, or "
-            "controller (as in ROS).",
-            show_default="none; controller for ROS",
-        ),
-    ] = None
-    noise: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N",
-            help="Uncertainty of the positions: one number, or one per joint; 0 if all are exact.",
-            show_default="half a unit of the last digit in the file",
-        ),
-    ] = None
-    time_noise: Annotated[
-        float | None,
-        typer.Option(
-            metavar="S",
-            min=0.0,
-            help="Uncertainty of the times, s; 0 if they are exact.",
-            show_default="half a unit of the last digit in the file",
-        ),
-    ] = None
-    joints: Annotated[
-        str | None,
-        typer.Option(metavar="A,B,...", help="Names of the columns of a table, in order."),
-    ] = None
-    topic: Annotated[str | None, typer.Option(metavar="/NAME", help="Of a rosbag.")] = None
-    tolerance: Annotated[
-        float,
-        typer.Option(
-            min=0.0,
-            max=1.0,
-            help="For a motion: relative excess over a limit that still counts as kept.",
-        ),
-    ] = 1e-6
-    strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict", help="For a motion: exit with 1 unless it passes and all of it is judged."
-        ),
-    ] = False
-    repair: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="OUT",
-            help="For a motion that breaks a limit: write it to this new file in its own format "
-            "(a table as CSV, a message as JSON), slowed down until it keeps every limit.",
-        ),
-    ] = None
-    plot: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="For a motion: draw it with its limits to this new file (.png, .svg or .pdf); "
-            "violations are red.",
-        ),
-    ] = None
+    interpolation: str | None = option("WORD", usual="none; controller for ROS")
+    """Interpolation between samples: none, linear, cubic, quintic, spline, or controller (as in
+    ROS)."""
+    noise: str | None = option("N", usual="half a unit of the last digit in the file")
+    """Uncertainty of the positions: one number, or one per joint; 0 if all are exact."""
+    time_noise: float | None = option(
+        "S", min=0.0, usual="half a unit of the last digit in the file"
+    )
+    """Uncertainty of the times, s; 0 if they are exact."""
+    joints: str | None = option("A,B,...")
+    """Names of the columns of a table, in order."""
+    topic: str | None = option("/NAME")
+    """Of a rosbag."""
+    tolerance: float = option("", 1e-6, min=0.0, max=1.0)
+    """For a motion: relative excess over a limit that still counts as kept."""
+    strict: bool = option("", False)
+    """For a motion: exit with 1 unless it passes and all of it is judged."""
+    repair: Path | None = option("OUT")
+    """For a motion that breaks a limit: write it to this new file in its own format (a table as
+    CSV, a message as JSON), slowed down until it keeps every limit."""
+    plot: Path | None = option("FILE")
+    """For a motion: draw it with its limits to this new file (.png, .svg or .pdf); violations are
+    red."""
 
 
-def check_file(source: str, options: MotionOptions, to: Answering) -> int:
+def check_file(source: str, options: MotionOptions, to: AnswerOptions) -> int:
     """Judge the motion of a file; 1 with ``strict`` unless it passes and all of it is judged."""
     how = None
     if options.interpolation is not None:

@@ -6,87 +6,70 @@ import shlex
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import MISSING, dataclass
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
 
 from ...problem import CHOICES, CaseError, scaffold
 from ...problem.cases import identity_of, units_in_header
-from .options import CurveOptions, LimitOptions
+from .options import CurveOptions, LimitOptions, Options, argument, option
 from .output import new_output, say, warn
 from .solve_files import limits_of_table
 
-_Limit = Annotated[
-    str | None,
-    typer.Option(help="One limit for all joints, or one per joint, separated by commas."),
-]
+
+@dataclass(frozen=True, kw_only=True)
+class DraftOptions(Options):
+    """The new file, and the table that it is made from."""
+
+    out: Path = argument("OUT.toml")
+    """New case file."""
+    table: Path = option("TABLE.csv", MISSING, "--from")
+    """One way-point a row, one joint a column."""
+    position_unit: str | None = option("rad|deg|m|cm|mm")
+    """One for all joints, or one per joint, separated by commas: deg,deg,mm."""
+    urdf: Path | None = option("FILE")
+    """URDF with the limits that are not given below, for the joints that the table names or
+    numbers."""
+    velocity: str | None = option()
+    """One limit for all joints, or one per joint, separated by commas."""
+    velocity_unit: str | None = option("rad/s|deg/s|rpm|mm/s|...")
+    """One for all joints, or one per joint, separated by commas: deg,deg,mm."""
+    acceleration: str | None = option()
+    """One limit for all joints, or one per joint, separated by commas."""
+    acceleration_unit: str | None = option("rad/s^2|deg/s^2|mm/s^2|...")
+    """One for all joints, or one per joint, separated by commas: deg,deg,mm."""
+    jerk: str | None = option()
+    """One limit for all joints, or one per joint, separated by commas."""
+    jerk_unit: str | None = option("rad/s^3|deg/s^3|mm/s^3|...")
+    """One for all joints, or one per joint, separated by commas: deg,deg,mm."""
+    time_unit: str | None = option("s|ms|min")
+    case_id: str | None = option("", None, "--id", usual="the name of OUT")
+    """Id of the case."""
 
 
-def _unit(metavar: str) -> Any:
-    """The option that takes a unit of joints."""
-    said = "One for all joints, or one per joint, separated by commas: deg,deg,mm."
-    return typer.Option(metavar=metavar, help=said)
+@dataclass(frozen=True, kw_only=True)
+class ClaimOptions(Options):
+    """What the paper prints."""
+
+    durations: str | None = option("H1,H2,...")
+    """Printed durations of the segments, recorded as a claim."""
+    total: str | None = option()
+    """Printed total time, recorded as a claim."""
+    where: str | None = option("PLACE")
+    """Place where these are printed: Table 2."""
 
 
-def new(
-    out: Annotated[Path, typer.Argument(metavar="OUT.toml", help="New case file.")],
-    table: Annotated[
-        Path,
-        typer.Option(
-            "--from", metavar="TABLE.csv", help="One way-point a row, one joint a column."
-        ),
-    ],
-    position_unit: Annotated[str | None, _unit("rad|deg|m|cm|mm")] = None,
-    urdf: Annotated[
-        Path | None,
-        typer.Option(
-            "--urdf",
-            metavar="FILE",
-            help="URDF with the limits that are not given below, for the joints that the table "
-            "names or numbers.",
-        ),
-    ] = None,
-    velocity: _Limit = None,
-    velocity_unit: Annotated[str | None, _unit("rad/s|deg/s|rpm|mm/s|...")] = None,
-    acceleration: _Limit = None,
-    acceleration_unit: Annotated[str | None, _unit("rad/s^2|deg/s^2|mm/s^2|...")] = None,
-    jerk: _Limit = None,
-    jerk_unit: Annotated[str | None, _unit("rad/s^3|deg/s^3|mm/s^3|...")] = None,
-    time_unit: Annotated[str | None, typer.Option(metavar="s|ms|min")] = None,
-    case_id: Annotated[
-        str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
-    ] = None,
-    *,
-    curve: CurveOptions,
-    durations: Annotated[
-        str | None,
-        typer.Option(
-            metavar="H1,H2,...", help="Printed durations of the segments, recorded as a claim."
-        ),
-    ] = None,
-    total: Annotated[
-        str | None, typer.Option(help="Printed total time, recorded as a claim.")
-    ] = None,
-    where: Annotated[
-        str | None, typer.Option(metavar="PLACE", help="Place where these are printed: Table 2.")
-    ] = None,
-) -> int:
+def new(draft: DraftOptions, curve: CurveOptions, claimed: ClaimOptions) -> int:
     """Create a case file from a table of way-points.
 
     Units that are not given are asked for.
     """
-    units = {
-        "position": position_unit,
-        "velocity": velocity_unit,
-        "acceleration": acceleration_unit,
-        "jerk": jerk_unit,
-        "time": time_unit,
-    }
-    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    out, table, urdf = draft.out, draft.table, draft.urdf
+    quantities = ("position", "velocity", "acceleration", "jerk", "time")
+    units = {name: getattr(draft, f"{name}_unit") for name in quantities}
+    limits = {name: getattr(draft, name) for name in ("velocity", "acceleration", "jerk")}
     with new_output(out, "OUT") as write:
         needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
-        units["position"] = position_unit or units_in_header(table) or None
+        units["position"] = draft.position_unit or units_in_header(table) or None
         given = {name: unit for name, unit in units.items() if unit is not None}
 
         def written(stated: Mapping[str, str]) -> str:
@@ -94,12 +77,12 @@ def new(
             return scaffold(
                 table,
                 stated,
-                case_id=identity_of(out.stem) if case_id is None else case_id,
+                case_id=identity_of(out.stem) if draft.case_id is None else draft.case_id,
                 family=curve.family,
                 degree=curve.degree,
-                durations=durations,
-                total=total,
-                where=where or "",
+                durations=claimed.durations,
+                total=claimed.total,
+                where=claimed.where or "",
                 limits_of=None if urdf is None else limits_of_table(str(table), beside),
                 warn=doubts.append,
                 **limits,
@@ -131,7 +114,11 @@ def new(
         doubts.clear()
         write(written(given))
     warn(doubts)
-    then = "judges what is claimed" if durations or total else "once claims are filled in"
+    then = (
+        "judges what is claimed"
+        if claimed.durations or claimed.total
+        else "once claims are filled in"
+    )
     say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
     return 0
 

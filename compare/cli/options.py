@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, field, fields
 from enum import IntEnum
 from functools import wraps
-from inspect import Parameter, Signature, signature
+from inspect import Parameter, Signature, getsource, signature
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
@@ -53,28 +55,86 @@ def command_group(**settings: Any) -> typer.Typer:
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """A record of options, one a field, that commands take as one parameter.
+
+    The help of an option is the docstring below it.
+    """
+
+    @classmethod
+    def declared(cls) -> list[tuple[str, Any, Any]]:
+        """Name, default and type of each option, as the parser takes them."""
+        hints, said = get_type_hints(cls), _docstrings(cls)
+        found = []
+        for one in fields(cls):
+            made, names = one.metadata["made"], one.metadata["names"]
+            if hints[one.name] is bool and not names:
+                names = (f"--{one.name.replace('_', '-')}",)
+            asked = made(*names, help=said.get(one.name), **one.metadata["settings"])
+            usual = Parameter.empty if one.default is MISSING else one.default
+            found.append((one.name, usual, Annotated[hints[one.name], asked]))
+        return found
+
+    @property
+    def given(self) -> list[str]:
+        """Options that are there, for the message where they do not belong."""
+        there = [one.name for one in fields(self) if getattr(self, one.name) != one.default]
+        return [f"--{name.replace('_', '-')}" for name in there]
+
+
+def option(metavar: str = "", default: Any = None, *names: str, **settings: Any) -> Any:
+    """An option of a record; settings as typer takes them, and `usual` for a default in words."""
+    settings["show_default"] = settings.pop("usual", True)
+    own = {"metavar": metavar or None, **settings}
+    metadata = {"made": typer.Option, "names": names, "settings": own}
+    return field(default=default, metadata=metadata)
+
+
+def argument(metavar: str, default: Any = MISSING, *, usual: str | bool = True) -> Any:
+    """An argument of a record."""
+    own = {"metavar": metavar, "show_default": usual}
+    return field(default=default, metadata={"made": typer.Argument, "names": (), "settings": own})
+
+
+def count(default: Any = None, *, least: int = 1, usual: str | bool = True) -> Any:
+    """The option for a number of starts, seeds or workers: what they make is kept in memory."""
+    return option("", default, min=least, max=10_000, usual=usual)
+
+
+def _docstrings(kind: type[Options]) -> dict[str, str]:
+    """The docstring below each option."""
+    found = {}
+    for one in kind.__mro__:
+        if one is not Options and issubclass(one, Options):
+            (declared,) = ast.parse(getsource(one)).body
+            for member, below in pairwise(getattr(declared, "body", ())):
+                match member, below:
+                    case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(text))):
+                        found[name] = " ".join(text.split())
+    return found
+
+
 def with_options(command: Callable[..., int]) -> Callable[..., int]:
     """The command with the fields of its records as options, in the place of each record."""
+    hints = get_type_hints(command)
     kinds: dict[str, type[Options]] = {
         name: kind
-        for name, kind in get_type_hints(command).items()
+        for name, kind in hints.items()
         if isinstance(kind, type) and issubclass(kind, Options)
     }
-    hints = get_type_hints(command, include_extras=True)
     taken = [
-        Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=hint)
-        for one in signature(command).parameters.values()
-        for name, default, hint in (
-            kinds[one.name].declared()
-            if one.name in kinds
-            else [(one.name, one.default, hints[one.name])]
+        Parameter(name, Parameter.KEYWORD_ONLY, default=usual, annotation=hint)
+        for one in signature(command).parameters
+        for name, usual, hint in (
+            kinds[one].declared() if one in kinds else [(one, Parameter.empty, hints[one])]
         )
     ]
 
     @wraps(command)
     def called(**given: Any) -> int:
         for name, kind in kinds.items():
-            given[name] = kind(**{field: given.pop(field) for field, _, _ in kind.declared()})
+            given[name] = kind(**{one.name: given.pop(one.name) for one in fields(kind)})
         return command(**given)
 
     called.__dict__["__signature__"] = Signature(taken)
@@ -82,89 +142,62 @@ def with_options(command: Callable[..., int]) -> Callable[..., int]:
     return called
 
 
-@dataclass(frozen=True)
-class Options:
-    """A record of options, one a field, that commands take as one parameter."""
+@dataclass(frozen=True, kw_only=True)
+class CaseOptions(Options):
+    """A case."""
 
-    @classmethod
-    def declared(cls) -> list[tuple[str, Any, Any]]:
-        """Name, default and type of each option."""
-        hints = get_type_hints(cls, include_extras=True)
-        return [(one.name, one.default, hints[one.name]) for one in fields(cls)]
-
-    @property
-    def given(self) -> list[str]:
-        """Options that are there, for the message where they do not belong."""
-        there = [name for name, usual, _ in self.declared() if getattr(self, name) != usual]
-        return [f"--{name.replace('_', '-')}" for name in there]
+    case: str = argument("CASE|FILE")
+    """Id of a published case, suite:NAME, or a case file."""
 
 
-def count(said: str, *, least: int = 1, **settings: Any) -> Any:
-    """The option for a number of starts, seeds or workers: what they make is kept in memory."""
-    return typer.Option(min=least, max=10_000, help=said, **settings)
+@dataclass(frozen=True, kw_only=True)
+class PartOptions(Options):
+    """The part of a case that is asked for; all of it by default."""
+
+    problem: str | None = option("ID")
+    """Only this problem of the case."""
+    reading: str | None = option("ID")
+    """Only this reading of the case."""
 
 
-# Arguments and options that several commands share.
-Source = Annotated[
-    str,
-    typer.Argument(metavar="CASE|FILE", help="Id of a published case, suite:NAME, or a case file."),
-]
-ProblemId = Annotated[
-    str | None, typer.Option("--problem", metavar="ID", help="Only this problem of the case.")
-]
-ReadingId = Annotated[
-    str | None, typer.Option("--reading", metavar="ID", help="Only this reading of the case.")
-]
-NoCache = Annotated[
-    bool,
-    typer.Option(
-        "--no-cache",
-        help="Neither keep proofs, optima and replays for later runs nor use kept ones. Kept ones "
-        "are verified or judged again before they count.",
-    ),
-]
+@dataclass(frozen=True, kw_only=True)
+class SelectOptions(PartOptions):
+    """The same, and how its joints share durations."""
+
+    coupling: str | None = option("shared|per-joint")
+    """Replaces the coupling of the case file."""
 
 
-@dataclass(frozen=True)
-class Selection(Options):
-    """What is asked of a case; all of it by default."""
+@dataclass(frozen=True, kw_only=True)
+class CacheOptions(Options):
+    """What is kept for later runs."""
 
-    problem: ProblemId = None
-    reading: ReadingId = None
-    coupling: Annotated[
-        str | None,
-        typer.Option(metavar="shared|per-joint", help="Replaces the coupling of the case file."),
-    ] = None
+    no_cache: bool = option("", False)
+    """Neither keep proofs, optima and replays for later runs nor use kept ones. Kept ones are
+    verified or judged again before they count."""
 
 
-def _limit(what: str) -> Any:
-    return typer.Option(metavar="L", help=f"{what}: one for all joints, or L,L,...")
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LimitOptions(Options):
     """Limits that the command line states, and units."""
 
-    velocity: Annotated[str | None, _limit("Largest speed, or a range LOW:HIGH")] = None
-    acceleration: Annotated[str | None, _limit("Largest acceleration, or a range LOW:HIGH")] = None
-    deceleration: Annotated[str | None, _limit("Largest acceleration while the speed falls")] = None
-    jerk: Annotated[str | None, _limit("Largest jerk, or a range LOW:HIGH")] = None
-    position: Annotated[str | None, _limit("Range LOW:HIGH of positions")] = None
-    limits: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="MoveIt's joint_limits.yaml, in rad and m.")
-    ] = None
-    urdf: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Limits of a URDF, in rad and m.")
-    ] = None
-    units: Annotated[
-        str | None,
-        typer.Option(
-            metavar="UNIT",
-            help="Units of the table and the flags: rad, deg, m, cm or mm; one, or one per joint. "
-            "ROS uses rad and m.",
-            show_default="rad",
-        ),
-    ] = None
+    velocity: str | None = option("L")
+    """Largest speed, or a range LOW:HIGH: one for all joints, or L,L,..."""
+    acceleration: str | None = option("L")
+    """Largest acceleration, or a range LOW:HIGH: one for all joints, or L,L,..."""
+    deceleration: str | None = option("L")
+    """Largest acceleration while the speed falls: one for all joints, or L,L,..."""
+    jerk: str | None = option("L")
+    """Largest jerk, or a range LOW:HIGH: one for all joints, or L,L,..."""
+    position: str | None = option("L")
+    """Range LOW:HIGH of positions: one for all joints, or L,L,..."""
+    limits: Path | None = option("FILE")
+    """MoveIt's joint_limits.yaml, in rad and m."""
+    urdf: Path | None = option("FILE")
+    """Limits of a URDF, in rad and m."""
+    units: str | None = option("UNIT", usual="rad")
+    """Units of the table and the flags: rad, deg, m, cm or mm; one, or one per joint. ROS uses rad
+    and m."""
 
     @property
     def flags(self) -> dict[str, str | None]:
@@ -173,30 +206,15 @@ class LimitOptions(Options):
         return {name: getattr(self, name) for name in quantities}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CurveOptions(Options):
     """The curve through the way-points of a table."""
 
-    family: Annotated[
-        str | None,
-        typer.Option(
-            help="Curve, by its name in case files or in the literature, or by the degrees of its "
-            "segments: 3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials...",
-            show_default="3-5-3 for four way-points, else a cubic spline",
-        ),
-    ] = None
-    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None
-
-
-def run_workers(usual: str | bool = True) -> Any:
-    """The option of `bench` and `study` that says how many processes run; and its default."""
-    return count("Number of processes; the rows do not depend on it.", show_default=usual)
-
-
-def run_store(usual: str | bool = True) -> Any:
-    """The option of both that says where runs are kept; and its default."""
-    said = "File that keeps finished runs; these are not repeated."
-    return typer.Option(metavar="FILE", help=said, show_default=usual)
+    family: str | None = option("", usual="3-5-3 for four way-points, else a cubic spline")
+    """Curve, by its name in case files or in the literature, or by the degrees of its segments:
+    3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials..."""
+    degree: int | None = option()
+    """Degree, for a curve that needs one."""
 
 
 def check_numbers(arguments: Sequence[str]) -> None:

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import Annotated, TypeVar
+from typing import TypeVar
 
-import typer
 from rich import box
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -28,7 +27,7 @@ from ...problem import CaseError, new_file, replace_file, try_writing_in, visibl
 from ..blocks import Block, CardShown, Grid, Prose, Terms, table
 from ..documents import Document, json_text
 from ..pages import unwritable
-from .options import Options
+from .options import Options, option
 
 D = TypeVar("D", bound=Document)
 
@@ -44,16 +43,14 @@ def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) ->
     say(text)
 
 
-@dataclass(frozen=True)
-class Answering(Options):
+@dataclass(frozen=True, kw_only=True)
+class AnswerOptions(Options):
     """How a command answers: with a summary for reading, or with JSON."""
 
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON (see docs/reference/command-line.md).")
-    ] = False
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Also write the JSON to this new file.")
-    ] = None
+    as_json: bool = option("", False, "--json")
+    """Print JSON (see docs/reference/command-line.md)."""
+    out: Path | None = option("FILE")
+    """Also write the JSON to this new file."""
 
     def answer(self, made: Callable[[], D], summary: Callable[[D], Iterable[Block]]) -> D:
         """Make a document, write it to a new file if there is to be one, and print it."""

@@ -11,19 +11,19 @@ from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
 from ..documents import ShowDocument, capital, quoted, show_document
 from .input import read_case
-from .options import ProblemId, ReadingId, Source
-from .output import Answering
+from .options import CaseOptions, PartOptions
+from .output import AnswerOptions
 
 _LIMITED = ("velocity", "acceleration", BRAKING, "jerk", "snap")
 """Limits in the order in which they are shown."""
 
 
-def show(
-    case: Source, problem: ProblemId = None, reading: ReadingId = None, *, to: Answering
-) -> int:
+def show(asked: CaseOptions, part: PartOptions, to: AnswerOptions) -> int:
     """Show what a case contains, and what it leaves open."""
-    found = read_case(case)
-    to.answer(lambda: show_document(found, problem, reading), lambda shown: _tables(shown, found))
+    case = read_case(asked.case)
+    to.answer(
+        lambda: show_document(case, part.problem, part.reading), lambda shown: _tables(shown, case)
+    )
     return 0
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Annotated
+from dataclasses import dataclass
 
 import typer
 
@@ -26,8 +26,17 @@ from ..documents import Answer, SolveDocument, SolveResult, Why, reason, solve_r
 from .certifying import ProofOptions, certify_case
 from .input import Selected, naming, read_case, select
 from .motion_results import by_result, place, reasons
-from .options import CurveOptions, LimitOptions, NoCache, Selection, count
-from .output import Answering, new_output, progress
+from .options import (
+    CacheOptions,
+    CurveOptions,
+    LimitOptions,
+    Options,
+    SelectOptions,
+    argument,
+    count,
+    option,
+)
+from .output import AnswerOptions, new_output, progress
 from .solve_files import (
     AskedSamples,
     SampleOptions,
@@ -37,48 +46,42 @@ from .solve_files import (
 )
 
 
+@dataclass(frozen=True, kw_only=True)
+class SolveOptions(Options):
+    """What is solved."""
+
+    case: str = argument("CASE|FILE")
+    """Id of a published case, suite:NAME, a case file, or a table of way-points (CSV) with limits
+    as options."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchOptions(Options):
+    """How it is solved, and whether it is proved."""
+
+    starts: int = count(4)
+    """Number of starts of the solver."""
+    seed: int = option("", 0, min=0)
+    """Seed of the random starts."""
+    prove: float = option("B", 0.1, min=0.0)
+    """Boxes for the proof of each optimum, as a share of those that an audit allows: 0 for no
+    proof, 1 for about ten seconds."""
+    certify: bool = option("", False)
+    """Prove an interval of each optimum instead."""
+    seconds: float | None = option("S", None, "--time", min=0.0, usual="none; 60 with --certify")
+    """Time limit for each problem, s; the best motion or interval found by then is returned."""
+
+
 def solve(
-    case: Annotated[
-        str,
-        typer.Argument(
-            metavar="CASE|FILE",
-            help="Id of a published case, suite:NAME, a case file, or a table of way-points (CSV) "
-            "with limits as options.",
-        ),
-    ],
-    *,
-    chosen: Selection,
-    starts: Annotated[int, count("Number of starts of the solver.")] = 4,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
-    prove: Annotated[
-        float,
-        typer.Option(
-            min=0.0,
-            metavar="B",
-            help="Boxes for the proof of each optimum, as a share of those that an audit allows: "
-            "0 for no proof, 1 for about ten seconds.",
-        ),
-    ] = 0.1,
-    certify: Annotated[
-        bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
-    ] = False,
+    asked: SolveOptions,
+    chosen: SelectOptions,
+    search: SearchOptions,
     proof: ProofOptions,
-    seconds: Annotated[
-        float | None,
-        typer.Option(
-            "--time",
-            min=0.0,
-            metavar="S",
-            help="Time limit for each problem, s; the best motion or interval found by then is "
-            "returned.",
-            show_default="none; 60 with --certify",
-        ),
-    ] = None,
     stated: LimitOptions,
     curve: CurveOptions,
     samples: SampleOptions,
-    no_cache: NoCache = False,
-    to: Answering,
+    kept: CacheOptions,
+    to: AnswerOptions,
 ) -> int:
     """Solve a case exactly: all its problems under all its readings.
 
@@ -89,24 +92,24 @@ def solve(
 
     With --certify, Ctrl-C leaves the best interval, and a state to continue from.
     """
-    read = _read(case, stated, curve)
-    if certify:
+    read = _read(asked.case, stated, curve)
+    if search.certify:
         if samples.given:
             raise typer.BadParameter("--samples needs a solution; leave --certify out")
-        limit = 60.0 if seconds is None else seconds
-        return certify_case(read, chosen, proof, limit, seed, to, not no_cache)
+        limit = 60.0 if search.seconds is None else search.seconds
+        return certify_case(read, chosen, proof, limit, search.seed, to, not kept.no_cache)
     for name in proof.given:
         raise typer.BadParameter(f"{name} needs --certify")
     if samples.samples is None:
         for name in samples.given:
             raise typer.BadParameter(f"{name} needs --samples")
     # What a time limit cuts short is not kept.
-    search = KeptNearby(seconds is None and not no_cache)
+    nearby = KeptNearby(search.seconds is None and not kept.no_cache)
 
     def solved(one: Selected, retimings: _Retimings) -> tuple[SolveResult, Solution]:
-        return _solved(read, one, starts, seed, prove, search, retimings)
+        return _solved(read, one, search, nearby, retimings)
 
-    return _solve_case(read, chosen, solved, seconds, samples.asked(), to)
+    return _solve_case(read, chosen, solved, search.seconds, samples.asked(), to)
 
 
 def _read(source: str, stated: LimitOptions, curve: CurveOptions) -> Case:
@@ -122,11 +125,11 @@ def _read(source: str, stated: LimitOptions, curve: CurveOptions) -> Case:
 
 def _solve_case(
     case: Case,
-    chosen: Selection,
+    chosen: SelectOptions,
     solved: Callable[[Selected, _Retimings], tuple[SolveResult, Solution]],
     limit: float | None,
     asked: AskedSamples | None,
-    to: Answering,
+    to: AnswerOptions,
 ) -> int:
     """Solve each selected problem and reading; write the motion of the first if asked to."""
     selected = select(case, chosen.problem, chosen.reading, chosen.coupling)
@@ -162,13 +165,7 @@ _Retimings = dict[tuple[object, ...], Retiming]
 
 
 def _solved(
-    case: Case,
-    one: Selected,
-    starts: int,
-    seed: int,
-    prove: float,
-    search: KeptNearby,
-    retimings: _Retimings,
+    case: Case, one: Selected, how: SearchOptions, nearby: KeptNearby, retimings: _Retimings
 ) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
     statement = case.statement(one.problem_id, one.reading_id)
@@ -177,13 +174,15 @@ def _solved(
         alone = len(question.joints) < len(one.problem.joints)
         joint = one.problem.joints.index(question.joints[0]) if alone else None
         exact = printed_problem_or_none(statement, joint)
-        answer = solve_exactly(question, exact=exact, starts=starts, seed=seed, prove=prove)
+        answer = solve_exactly(
+            question, exact=exact, starts=how.starts, seed=how.seed, prove=how.prove
+        )
         return with_other_route(answer)
 
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(Pair(one.problem_id, one.reading_id))
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
-        apart = solve_per_joint(one.problem, slacks=slacks, solver=solver, search=search)
+        apart = solve_per_joint(one.problem, slacks=slacks, solver=solver, search=nearby)
         together = solver(one.problem)
         retimed = [_retimed(s, retimings) for s in apart.joints]
         return solve_result(*ids, apart, retimed, together), together

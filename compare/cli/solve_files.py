@@ -6,10 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
-import typer
 
 from ...nlp import Solution, retimed_motion
 from ...problem import Case, CaseError, FileLimits, parse_case, scaffold
@@ -29,7 +27,7 @@ from ..documents import WrittenMotion, value_or_none
 from .input import Selected, naming
 from .motion_checking import stated_limits, word_of, words
 from .motion_results import checked_motion
-from .options import CurveOptions, LimitOptions, Options
+from .options import CurveOptions, LimitOptions, Options, option
 from .output import warn
 
 
@@ -89,34 +87,19 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
     return names
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SampleOptions(Options):
     """The file into which the motion of an answer goes."""
 
-    samples: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write the motion of the answer to this file."),
-    ] = None
-    rate: Annotated[
-        float | None,
-        typer.Option(min=1e-3, max=1e6, help="With --samples: rows a second.", show_default="500"),
-    ] = None
-    format: Annotated[
-        str | None,
-        typer.Option(
-            metavar="csv|ros|ppoly",
-            help="With --samples: rows, a JointTrajectory, or the polynomials.",
-            show_default="csv",
-        ),
-    ] = None
-    retimed: Annotated[
-        bool,
-        typer.Option(
-            "--retimed",
-            help="With --samples: the path of the answer, re-timed by TOPPRA under velocity and "
-            "acceleration limits only.",
-        ),
-    ] = False
+    samples: Path | None = option("FILE")
+    """Write the motion of the answer to this file."""
+    rate: float | None = option("", min=1e-3, max=1e6, usual="500")
+    """With --samples: rows a second."""
+    format: str | None = option("csv|ros|ppoly", usual="csv")
+    """With --samples: rows, a JointTrajectory, or the polynomials."""
+    retimed: bool = option("", False)
+    """With --samples: the path of the answer, re-timed by TOPPRA under velocity and acceleration
+    limits only."""
 
     def asked(self) -> AskedSamples | None:
         """What is to be written; 500 rows a second, as arms of today are commanded, by default."""

@@ -10,12 +10,12 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import timedelta
 from itertools import groupby
 from math import inf
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 import typer
@@ -25,54 +25,44 @@ from .. import gaps
 from ..audits import in_words
 from ..blocks import ONE_BY_ONE, Block, Prose, brief_board, table
 from ..documents import noted, percent
-from .options import ExitCode, run_store, run_workers
+from .options import ExitCode, Options, argument, count, option
 from .output import interrupted_by, progress, rendered, say
 
 
-def study(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE.toml|leaderboard",
-            help="Study file (see docs/reference/studies.md), or leaderboard for the study behind "
-            "the leaderboard.",
-        ),
-    ],
-    store: Annotated[Path | None, run_store("FILE.sqlite")] = None,
-    workers: Annotated[int | None, run_workers("one for each core")] = None,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS", help="Run on the Dask cluster with this scheduler instead."
-        ),
-    ] = None,
-    export: Annotated[
-        list[Path] | None,
-        typer.Option(
-            metavar="FILE",
-            help="Write the rows to a new .csv or .parquet file, or to a new .ioh folder in "
-            "IOHprofiler's format. May be given several times.",
-        ),
-    ] = None,
-    summary: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE.csv",
-            help="Write one row for each optimiser, problem, handling and budget; an earlier file "
-            "is replaced.",
-        ),
-    ] = None,
-    retry: Annotated[bool, typer.Option("--retry", help="Repeat failed runs.")] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class StudyOptions(Options):
+    """The study, where it runs, and what is written."""
+
+    file: Path = argument("FILE.toml|leaderboard")
+    """Study file (see docs/reference/studies.md), or leaderboard for the study behind the
+    leaderboard."""
+    store: Path | None = option("FILE", usual="FILE.sqlite")
+    """File that keeps finished runs; these are not repeated."""
+    workers: int | None = count(usual="one for each core")
+    """Number of processes; the rows do not depend on it."""
+    dask: str | None = option("ADDRESS")
+    """Run on the Dask cluster with this scheduler instead."""
+    export: list[Path] | None = option("FILE")
+    """Write the rows to a new .csv or .parquet file, or to a new .ioh folder in IOHprofiler's
+    format. May be given several times."""
+    summary: Path | None = option("FILE.csv")
+    """Write one row for each optimiser, problem, handling and budget; an earlier file is
+    replaced."""
+    retry: bool = option("", False)
+    """Repeat failed runs."""
+
+
+def study(asked: StudyOptions) -> int:
     """Run optimisers on many problems; finished runs are kept.
 
     Ctrl-C loses nothing that is finished; the same command continues.
     """
-    if dask is not None and workers is not None:
+    file, store, dask, summary = asked.file, asked.store, asked.dask, asked.summary
+    if dask is not None and asked.workers is not None:
         raise typer.BadParameter(
             "--workers cannot be combined with --dask, whose cluster has its own"
         )
-    exports = export or []
+    exports = asked.export or []
     shipped = file == Path(gaps.LEADERBOARD)
     path = store or file.with_suffix(".sqlite")
     if path == file:
@@ -85,7 +75,7 @@ def study(
         raise CaseError(str(summary), "--summary", "is not a .csv file; give one")
     plan = gaps.leaderboard_study() if shipped else gaps.load_study(file)
     again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
-    cores = workers or os.cpu_count() or 1
+    cores = asked.workers or os.cpu_count() or 1
     engines = gaps.on_this_machine(cores) if dask is None else gaps.on_dask(dask)
     with gaps.Store(path) as kept:
         session = gaps.StudySession(total=len(plan), resumed=0)
@@ -101,7 +91,7 @@ def study(
                 step("the optima from which gaps are measured")
                 # Ctrl-C ends the session with its tally, instead of the program at once.
                 with interrupted_by(signal.default_int_handler):
-                    session = gaps.run_study(plan, kept, engine, retry=retry, progress=show)
+                    session = gaps.run_study(plan, kept, engine, retry=asked.retry, progress=show)
         except KeyboardInterrupt:
             rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
             done = f"{session.resumed + session.run:,} of {session.total:,} runs are stored"
@@ -176,8 +166,8 @@ def _summary(
         Prose("A gap is that of the feasible time, (T − U)/U against the best known total U."),
     ]
     # Five are printed; the store and the exports have all.
-    for message, count in messages.most_common(5):
-        parts.append(Prose(f"failed, {count:,} times: {message}", "warning"))
+    for message, times in messages.most_common(5):
+        parts.append(Prose(f"failed, {times:,} times: {message}", "warning"))
     if len(messages) > 5:
         parts.append(Prose(f"and {len(messages) - 5:,} other messages (see the exports)"))
     if session.run:

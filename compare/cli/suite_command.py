@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
@@ -28,34 +28,44 @@ from ..documents import (
     suite_document,
     value_or_none,
 )
-from .options import ENDS, command_group, with_options
-from .output import Answering, progress, say
+from .options import ENDS, Options, argument, command_group, option, with_options
+from .output import AnswerOptions, progress, say
 
 # Commands of the suite.
 suite = command_group(invoke_without_command=True)
 
-Folder = Annotated[
-    Path,
-    typer.Argument(
-        metavar="FOLDER", help="A new or an empty folder, or one written by this command."
-    ),
-]
+
+@dataclass(frozen=True, kw_only=True)
+class FolderOptions(Options):
+    """Where files go."""
+
+    out: Path = argument("FOLDER")
+    """A new or an empty folder, or one written by this command."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class InstanceOptions(Options):
+    """An instance."""
+
+    name: str = argument("NAME")
+    """An instance, with or without `suite:`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ListOptions(Options):
+    """Which instances are listed."""
+
+    curve: str | None = option("WORD")
+    """Only curves with this word in their name: quintic."""
 
 
 @suite.callback(epilog=ENDS)
 @with_options
-def _suite(
-    context: typer.Context,
-    curve: Annotated[
-        str | None,
-        typer.Option(metavar="WORD", help="Only curves with this word in their name: quintic."),
-    ] = None,
-    *,
-    to: Answering,
-) -> int:
+def _suite(context: typer.Context, listed: ListOptions, to: AnswerOptions) -> int:
     """List problems whose optimum is known within proved bounds."""
     if context.invoked_subcommand is not None:
         return 0
+    curve = listed.curve
     chosen = list_instances() if curve is None else select_curve(curve)
     if not chosen:
         known = ", ".join(sorted({one.curve for one in list_instances()}))
@@ -73,14 +83,9 @@ def _suite(
 
 @suite.command(epilog=ENDS)
 @with_options
-def show(
-    name: Annotated[
-        str, typer.Argument(metavar="NAME", help="An instance, with or without `suite:`.")
-    ],
-    to: Answering,
-) -> int:
+def show(asked: InstanceOptions, to: AnswerOptions) -> int:
     """Show an instance: bounds, where it comes from, how hard it is, how to verify it."""
-    one = load_instance(name)
+    one = load_instance(asked.name)
     file = one.certificate_file()
     path = None if file is None else shlex.quote(str(file))
     to.answer(lambda: instance_document(one, path), lambda shown: _shown(shown, one))
@@ -88,7 +93,8 @@ def show(
 
 
 @suite.command(epilog=ENDS)
-def export(out: Folder) -> int:
+@with_options
+def export(to: FolderOptions) -> int:
     """Write plain instance files, case files, certificates, the table, and a loader."""
     found = {"load_instance.py": LOADER}
     package = files("trajgap.problem.suite")
@@ -105,20 +111,21 @@ def export(out: Folder) -> int:
             if certificate is not None:
                 text = certificate.read_text(encoding="utf-8")
                 found[f"certificates/{one.name}.json"] = text
-    written.write_folder(out, found, _foreign, "a suite", "FOLDER")
-    say(f"{len(instances)} instances: {out}\n")
+    written.write_folder(to.out, found, _foreign, "a suite", "FOLDER")
+    say(f"{len(instances)} instances: {to.out}\n")
     return 0
 
 
 @suite.command(epilog=ENDS)
-def pages(out: Folder) -> int:
+@with_options
+def pages(to: FolderOptions) -> int:
     """Write a page for each instance, and an index."""
     instances = list_instances()
     with progress("pages", len(instances)) as step:
         found = written.suite_pages(instances, step)
     files = {**found, _MARK: json_text(suite_document(instances))}
-    written.write_folder(out, files, _foreign, "a suite", "FOLDER")
-    say(f"pages: {out / 'index.html'}\n")
+    written.write_folder(to.out, files, _foreign, "a suite", "FOLDER")
+    say(f"pages: {to.out / 'index.html'}\n")
     return 0
 
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from ...nlp import ExactProblem
 from ...nlp.proofs import unlike
@@ -26,38 +24,33 @@ from ..blocks import Prose
 from ..documents import UNNAMED, AskedQuestion, JudgedFile, VerifyDocument, verify_document, worth
 from .certifying import Question, questions_of
 from .input import read_case, select
-from .output import Answering, progress
+from .options import Options, argument, option
+from .output import AnswerOptions, progress
 
 
-def verify(
-    files: Annotated[
-        list[Path], typer.Argument(metavar="FILE...", help="Certificates, or states.")
-    ],
-    case: Annotated[
-        str | None,
-        typer.Option(
-            "--case",
-            metavar="CASE",
-            help="Compare the problems, number by number, with those of this published case or "
-            "case file.",
-        ),
-    ] = None,
-    seconds: Annotated[
-        float, typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file.")
-    ] = 60.0,
-    *,
-    to: Answering,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class VerifyOptions(Options):
+    """The files, and what they are compared with."""
+
+    files: list[Path] = argument("FILE...")
+    """Certificates, or states."""
+    case: str | None = option("CASE")
+    """Compare the problems, number by number, with those of this published case or case file."""
+    seconds: float = option("SECONDS", 60.0, "--time", min=0.0)
+    """For each file."""
+
+
+def verify(asked: VerifyOptions, to: AnswerOptions) -> int:
     """Verify certificates independently of the solver.
 
     The code that does so imports nothing of it.
     """
-    for path in files:
+    for path in asked.files:
         check_regular(path)
-    asked = None
-    stated = None if case is None else read_case(case)
+    known = None
+    stated = None if asked.case is None else read_case(asked.case)
     if stated is not None:
-        asked = [
+        known = [
             question
             for one in select(stated, None, None)
             for coupling in Coupling
@@ -66,10 +59,10 @@ def verify(
     verdicts: list[JudgedFile] = []
 
     def made() -> VerifyDocument:
-        with progress("verify", len(files)) as step:
-            for path in files:
+        with progress("verify", len(asked.files)) as step:
+            for path in asked.files:
                 step(path.name)
-                verdicts.append((str(path), *_verdict(path, seconds, asked)))
+                verdicts.append((str(path), *_verdict(path, asked.seconds, known)))
         return verify_document(verdicts)
 
     to.answer(made, lambda shown: _verified(shown, stated))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, get_args
+from typing import Annotated, get_args
 
-from pydantic import BaseModel, PlainSerializer, SkipValidation, WithJsonSchema
+from pydantic import PlainSerializer, SkipValidation, WithJsonSchema
 from pydantic.json_schema import JsonSchemaValue
 
 from ...problem import Case
@@ -54,11 +54,9 @@ def cases_document(cases: Iterable[Case]) -> CasesDocument:
     return CasesDocument(cases=tuple(map(listed, cases)))
 
 
-def _as_in_the_file(block: BaseModel) -> dict[str, Any]:
-    return block.model_dump(mode="json", exclude_none=True, exclude_unset=True)
-
-
-_WRITTEN = PlainSerializer(_as_in_the_file)
+_WRITTEN = PlainSerializer(
+    lambda block: block.model_dump(mode="json", exclude_none=True, exclude_unset=True)
+)
 """Writes a block of a case file with the keys that stand in the file."""
 
 

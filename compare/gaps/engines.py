@@ -9,7 +9,6 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExec
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import Any
 
 from ...problem import LostWork, ProcessError, Processes, TrajgapError
 from .rows import Trial, failed
@@ -85,11 +84,10 @@ def on_dask(address: str, patience: float = 30.0) -> Iterator[Engine]:
             f"dask: no scheduler answers at {address} ({said}); check the address"
         ) from None
     with client:
-        yield Engine(client.get_executor(), lambda: _threads(client), f"Dask at {address}")
-
-
-def _threads(client: Any) -> int:
-    return max(1, sum(int(threads) for threads in client.nthreads().values()))
+        executor = client.get_executor()
+        yield Engine(
+            executor, lambda: max(1, sum(client.nthreads().values())), f"Dask at {address}"
+        )
 
 
 def outcomes(

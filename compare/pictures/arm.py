@@ -37,29 +37,15 @@ class ArmMotion:
 def arm_picture(
     chain: Chain, motions: Sequence[ArmMotion], waypoints: ArrayLike, *, name: str, title: str
 ) -> str:
-    """Panels in which one arm follows each motion, with a slider over time.
+    """Panels in which one arm follows each motion, with a slider over time, as HTML.
 
-    Parameters
-    ----------
-    chain : Chain
-        The arm; joints of links are drawn at the origins of its frames.
-    motions : sequence of ArmMotion
-        One to four; the panels share the clock, so the fastest arm waits at its end.
-    waypoints : array_like, shape (way-points, joints)
-        rad; drawn where the end of the arm stands.
-    name : str
-        Unique in the page: letters, digits and dashes.
+    SVG, its own style and a script for the slider. Without the script the arms stand at the start,
+    with the ways of their ends.
 
-    Returns
-    -------
-    str
-        HTML: SVG, its own style and a script for the slider. Without the script the arms stand at
-        the start, with the ways of their ends.
-
-    Raises
-    ------
-    TrajgapError
-        If there are no motions or more than four, or one is not sampled for every joint.
+    `chain`: joints of links are drawn at the origins of its frames. `motions`: one to four; the
+    panels share the clock, so the fastest arm waits at its end. `waypoints`: shape (way-points,
+    joints), rad; drawn where the end of the arm stands. `name`: unique in the page: letters, digits
+    and dashes.
     """
     if not 1 <= len(motions) <= len(_COLOURS):
         raise TrajgapError(f"arm_picture: {len(motions)} motions; give one to {len(_COLOURS)}")
@@ -100,17 +86,15 @@ def arm_picture(
         },
         separators=(",", ":"),
     )
-    style, controls, script = (_static(f"arm{end}") for end in (".css", "_controls.html", ".js"))
+    static = Path(__file__).parent / "static"
+    names = ("arm.css", "arm_controls.html", "arm.js")
+    style, controls, script = ((static / one).read_text(encoding="utf-8") for one in names)
     return (
         f'<figure class="trajgap-arm" id="{name}">\n<style>\n{style}</style>\n'
         f"<figcaption>{escape(visible(title))}</figcaption>\n"
         f'<div class="trajgap-arm-panels">\n{panels}</div>\n{controls}'
         f'<script type="application/json">{data}</script>\n<script>\n{script}</script>\n</figure>\n'
     )
-
-
-def _static(name: str) -> str:
-    return (Path(__file__).parent / "static" / name).read_text(encoding="utf-8")
 
 
 @dataclass

@@ -89,7 +89,8 @@ def beyond(
     times, values = sampled(trajectory, column, order)
     own = np.searchsorted(trajectory.breaks[1:-1], times, side="right")
     # Of an error of which nothing is known, the largest number: infinity less itself is none.
-    slacks = np.broadcast_to(np.nan_to_num(slack), (pieces,))[own]
+    finite = np.nan_to_num(slack, nan=np.finfo(np.float64).max)
+    slacks = np.broadcast_to(finite, (pieces,))[own]
     least, most = np.full(times.size, low), np.full(times.size, high)
     if np.isfinite(braking):
         forth = trajectory(times, 1)[:, column] >= 0

@@ -91,7 +91,11 @@ class Shown(SphinxDirective):
 
 def _directive(made: Callable[..., Iterable[Block | nodes.Node]]) -> type[SphinxDirective]:
     """The directive of a function: what has no default is an argument, all else an option."""
-    readers = {"str": directives.unchanged, "int": directives.positive_int, "bool": _flag}
+    readers: dict[str, Callable[[str], object]] = {
+        "str": directives.unchanged,
+        "int": directives.positive_int,
+        "bool": lambda given: directives.flag(given) is None,
+    }
     _, *taken = signature(made).parameters.values()
     own = {
         "made": made,
@@ -101,10 +105,6 @@ def _directive(made: Callable[..., Iterable[Block | nodes.Node]]) -> type[Sphinx
         },
     }
     return type(made.__name__, (Shown,), own)
-
-
-def _flag(given: str | None) -> bool:
-    return directives.flag(given) is None
 
 
 def card(page: Shown, name: str) -> list[Block]:

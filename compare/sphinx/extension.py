@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -58,7 +57,8 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     for name, directive in DIRECTIVES.items():
         app.add_directive(name, directive)
     app.add_role("trajgap", ValueRole())
-    app.connect("builder-inited", _add_static)
+    static = str(Path(__file__).parent / "static")
+    app.connect("builder-inited", lambda app: app.config.html_static_path.append(static))
     app.add_css_file("trajgap.css")
     app.add_js_file("trajgap.js", loading_method="defer")
     return {
@@ -66,7 +66,3 @@ def setup(app: Sphinx) -> ExtensionMetadata:
         "parallel_read_safe": True,
         "parallel_write_safe": True,
     }
-
-
-def _add_static(app: Any) -> None:
-    app.config.html_static_path.append(str(Path(__file__).parent / "static"))

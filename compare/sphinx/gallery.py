@@ -19,19 +19,10 @@ def scrape_pictures(_block: object, block_vars: dict[str, Any], gallery_conf: An
 
     List ``"trajgap.compare.sphinx.gallery.scrape_pictures"`` in ``image_scrapers`` of
     ``sphinx_gallery_conf``. A picture counts once it has a name, or is what the block ends with.
+    Parameters are those that sphinx-gallery passes.
 
-    Parameters
-    ----------
-    _block : tuple
-        Not needed.
-    block_vars, gallery_conf : mapping
-        As sphinx-gallery passes them.
-
-    Returns
-    -------
-    str
-        reStructuredText that shows them, each with its description in words: inside a web page,
-        so that they follow its theme and scroll on a phone; as files elsewhere.
+    Returns reStructuredText that shows them, each with its description in words: inside a web page,
+    so that they follow its theme and scroll on a phone; as files elsewhere.
     """
     from sphinx_gallery.scrapers import figure_rst
 
