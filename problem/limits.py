@@ -176,6 +176,10 @@ class Limits:
         found.flags.writeable = False  # all readers share it
         return found
 
+    def same(self, other: Limits) -> bool:
+        """Whether all limits are equal."""
+        return all(np.array_equal(vars(self)[name], vars(other)[name]) for name in _NAMES)
+
     @property
     def uneven(self) -> bool:
         """Whether some limit of a derivative is not one size, both sides and all signs of speed."""

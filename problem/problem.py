@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array
-from .curves import Curve, Interpolant, TimedUniformBSpline, as_curve, as_piecewise
+from .curves import Curve, Interpolant, as_curve, as_piecewise
 from .duration_ratios import RatioWord, as_ratios, no_formula
 from .errors import TrajgapError
 from .limits import Limits
@@ -132,7 +132,7 @@ class Problem:
                     f"limits: given for {self.limits.joints} joints, way-points for {q.shape[1]}"
                 )
             object.__setattr__(self, "limits", self.limits.of_joints(q.shape[1]))
-        if self.limits.braking.any() and isinstance(self.curve, TimedUniformBSpline):
+        if self.limits.braking.any() and not self.curve.polynomial_in_time:
             raise TrajgapError(
                 f"limits.deceleration: a limit of its own is not supported on a {self.curve.name}; "
                 "give the smaller of both as the acceleration"

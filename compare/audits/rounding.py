@@ -167,13 +167,8 @@ def judge_rounding(
 
 def same_limits(one: Problem, other: Problem) -> bool:
     """Whether two problems have equal limits and bounds on the durations."""
-    a, b = one.limits, other.limits
     return (
-        np.array_equal(a.sides, b.sides)
-        and np.array_equal(a.ends("acceleration"), b.ends("acceleration"))
-        and np.array_equal(a.deceleration, b.deceleration)
-        and np.array_equal(a.position_lower, b.position_lower)
-        and np.array_equal(a.position_upper, b.position_upper)
+        one.limits.same(other.limits)
         and np.array_equal(one.duration_lower, other.duration_lower)
         and np.array_equal(one.duration_upper, other.duration_upper)
     )

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import TOLERANCE, Array, Problem, Verdict, check
+from ...problem import QUANTITIES, TOLERANCE, Array, Problem, Verdict, check
 from .decided import Local, decided, stretched
 from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, kkt, sharpened
 from .solution import Route, Solution, Status
@@ -81,8 +81,10 @@ def judged(
         longer = f"longer by {beyond:.1e} (relative) than a tight motion"
         notes += [f"{longer}, within rounding errors"]
     if answer.verdict.verdict is Verdict.DISCONTINUOUS:
-        jumps = sum(jump.order < 2 for jump in answer.verdict.jumps)
-        notes += [f"limits kept inside the segments; {jumps} jumps of velocity between them"]
+        orders = [jump.order for jump in answer.verdict.jumps]
+        lowest = max(1, min(orders))
+        jumps = f"{sum(r <= lowest for r in orders)} jumps of {QUANTITIES[lowest - 1]}"
+        notes += [f"limits kept inside the segments; {jumps} between them"]
     falling = still_falling(answer.durations, floor)
     if falling is not None:
         status, notes = Status.NOT_ATTAINED, [falling]

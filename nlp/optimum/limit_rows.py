@@ -17,7 +17,7 @@ from ...problem import (
     fit,
     peak_gradients,
 )
-from ...problem.checks import intervals
+from ...problem.checks import signed_parts
 from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory, valued
 
 Indices = NDArray[np.int64]
@@ -188,7 +188,7 @@ class _Parts:
         limits, found = problem.limits, [np.zeros((7, 0))]
         for j in np.flatnonzero(limits.braking).tolist():
             v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
-            low, high, _, growth = intervals(v, a)
+            low, high, _, growth = signed_parts(v, a)
             ends = np.stack([low, high])
             values = valued(a[:, None, None], ends)
             last = (np.abs(values[1]) > np.abs(values[0]))[None].astype(np.int64)

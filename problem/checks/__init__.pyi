@@ -14,7 +14,7 @@ from .evaluation import (
 )
 from .jumps import Jump as Jump
 from .one_sided import (
-    intervals as intervals,
     one_sided_extreme as one_sided_extreme,
     one_sided_sizes as one_sided_sizes,
+    signed_parts as signed_parts,
 )

@@ -68,7 +68,7 @@ def one_sided_extreme(
     return found
 
 
-def intervals(v: Array, a: Array) -> tuple[Array, Array, Array, Array]:
+def signed_parts(v: Array, a: Array) -> tuple[Array, Array, Array, Array]:
     """Pieces cut where speed, acceleration or jerk is 0, of shape (intervals, pieces).
 
     From coefficients of speed and acceleration, powers first. Ends of the intervals, and, at their
@@ -90,7 +90,7 @@ def one_sided_sizes(v: Array, a: Array) -> Array:
 
     From coefficients of speed and acceleration, powers first, without a bound on errors.
     """
-    low, high, _, growth = intervals(v, a)
+    low, high, _, growth = signed_parts(v, a)
     tops = np.maximum(*(np.abs(valued(a[:, None], end)) for end in (low, high)))
     wide = low < high
     sides = [np.where(wide & (sign * growth > 0.0), tops, 0.0) for sign in (1.0, -1.0)]
@@ -99,7 +99,7 @@ def one_sided_sizes(v: Array, a: Array) -> Array:
 
 def _part(v: Array, a: Array, blur: Array, err: Array, sign: float, rest: float) -> OneSided:
     """The same of some pieces, powers first, apart from accelerations below their own error."""
-    low, high, speed, growth = intervals(v, a)
+    low, high, speed, growth = signed_parts(v, a)
     moving = (low < high) & (np.abs(speed) + blur > rest)
     turned = np.abs(valued(v[:, None], low)) > np.abs(valued(v[:, None], high))
     slow, fast = np.where(turned, high, low), np.where(turned, low, high)

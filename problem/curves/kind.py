@@ -151,6 +151,11 @@ class Curve(ABC):
         return all(value == 0.0 for b in breaks for _, value in self.prescribed_at(b))
 
     @property
+    def polynomial_in_time(self) -> bool:
+        """Whether derivatives are polynomials of time on each piece."""
+        return True
+
+    @property
     def free(self) -> int:
         """Coefficients of one joint that are left to the optimiser."""
         return 0

@@ -173,6 +173,11 @@ class TimedUniformBSpline(UniformBSpline):
         """Coefficients in e of t on each segment, as combinations of the durations."""
         return clock_matrix(self.waypoints, self.natural_clock)
 
+    @property
+    def polynomial_in_time(self) -> bool:
+        """Not where time is a spline too."""
+        return False
+
     def smooth_order(self, break_index: int) -> int:
         """C2 at every break."""
         return 2

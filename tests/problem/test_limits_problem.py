@@ -24,6 +24,7 @@ from trajgap.problem import (
     piecewise,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 from trajgap.problem.motions import JointLimits, as_motion, check_motion
 
@@ -80,6 +81,27 @@ def test_limits_without_a_number_of_joints() -> None:
     assert not Limits(2, 3).limits_position
 
 
+def test_a_deceleration_of_its_own_is_no_size_of_acceleration() -> None:
+    limits = Limits(9.0, [2.0, 5.0, 4.0], deceleration=[3.0, 1.0, 4.0])
+    np.testing.assert_array_equal(limits.braking, [True, True, False])
+    np.testing.assert_array_equal(limits.sides[1, :, 1], [3.0, 5.0, 4.0])
+    np.testing.assert_array_equal(limits.narrow.acceleration, [2.0, 1.0, 4.0])
+    np.testing.assert_array_equal(limits.hull.acceleration, [3.0, 5.0, 4.0])
+    with pytest.raises(TrajgapError, match=r"limits.deceleration: a limit of its own"):
+        _ = limits.acceleration
+    assert limits.same(limits.with_deceleration([3.0, 1.0, np.inf]))
+    assert not limits.same(limits.with_deceleration([3.0, 2.0, 4.0]))
+    back = JointLimits.of(limits, ("a", "b", "c")).two_sided
+    assert back.same(limits)
+    assert limits.joint(2).acceleration == 4.0
+    with pytest.raises(TrajgapError, match=r"limits.snap: motions from elsewhere"):
+        JointLimits.of(Limits(snap=1.0), ("a",))
+    np.testing.assert_array_equal(
+        Limits(jerk=[1.0, np.inf], snap=[np.inf, 1]).smooth_orders, [2, 3]
+    )
+    assert Limits(velocity=1.0).smooth_orders == 1
+
+
 def test_what_was_given_is_copied_and_frozen() -> None:
     given = {"velocity": np.array([2.0, 3.0])}
     points = WAYPOINTS.copy()
@@ -110,6 +132,9 @@ def test_what_was_given_is_copied_and_frozen() -> None:
         ({"velocity": [[np.nan, 1]]}, r"limits.velocity: is NaN"),
         ({"velocity": "fast"}, r"limits.velocity: not numbers; give one value, or one per joint"),
         ({"jerk": [1, [2, 3]]}, r"limits.jerk: not numbers"),
+        ({"acceleration": [[-1, 2]], "deceleration": 1.0}, r"deceleration: .* one finite size"),
+        ({"deceleration": 1.0}, r"limits.deceleration: must be positive, and go with one finite"),
+        ({"acceleration": 2.0, "deceleration": 0.0}, r"limits.deceleration: must be positive"),
         (
             {"position_lower": [0, 2], "position_upper": [1, 1]},
             r"limits.position_lower: lies above limits.position_upper",
@@ -153,6 +178,13 @@ def test_problem_fills_in() -> None:
         ({"waypoints": np.full((4, 2), np.inf)}, r"waypoints: every angle must be finite"),
         ({"waypoints": WAYPOINTS[:3]}, r"waypoints: 3-5-3 polynomials with 3 segments needs 4"),
         ({"curve": cubic_spline_virtual(5)}, r"waypoints: C2 cubic spline with two virtual .*"),
+        (
+            {
+                "curve": uniform_cubic_b_spline(4, "timed"),
+                "limits": Limits(1, 2, deceleration=1),
+            },
+            r"limits.deceleration: a limit of its own is not supported on a uniform cubic B-spline",
+        ),
         ({"limits": Limits([1, 2, 3])}, r"limits: given for 3 joints, way-points for 2"),
         ({"duration_lower": [0.1, 0.2]}, r"duration_lower: expected one value or 3, got 2"),
         ({"duration_upper": np.ones((3, 1))}, r"duration_upper: expected one value or 3, got 3"),

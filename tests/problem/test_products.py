@@ -224,6 +224,15 @@ def test_braking_and_speeding_up_are_told_apart(curve: str, mirror: float) -> No
             assert peaks[word].value / peaks[word].limit > 0.0
             if sign < 0:
                 assert found.stretch == pytest.approx((1 - ROOM) ** -0.5, rel=1e-8)
+            own = Limits(acceleration=given[0], deceleration=given[1])
+            posed, h = replace(truth.problem, limits=own), truth.durations
+            own_check, batch = check(posed, h), evaluate(posed, h[None])
+            assert own_check.limits is found.limits
+            ratios = {p.quantity: p.ratio for p in own_check.peaks}
+            assert ratios[word] == pytest.approx(1 / (1 + sign * ROOM), rel=1e-8)
+            assert batch.ratios[0, JOINT, 1] == pytest.approx(max(ratios.values()), rel=1e-9)
+            assert batch.stretch[0] == pytest.approx(own_check.stretch, rel=1e-9)
+            assert keeps_limits(posed, h[None], 1e-9)[0] == (sign > 0)
 
 
 @pytest.mark.parametrize("order", range(5), ids=ORDERS)

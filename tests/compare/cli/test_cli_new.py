@@ -119,17 +119,18 @@ def test_new_has_limits_and_names_of_a_urdf(run: Run, folder: Path, arm: str, he
     (folder / "t.csv").write_text(f"{header}\n{rows}", "utf-8")
     code, _, err = run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *UNITS)
     assert code == 0
-    assert err.count("deceleration has its own limit at joint swing") == 1
+    assert "deceleration" not in err
     case = load_case("out.toml")
     assert case.robot.joints == ("turn", "swing", "reach")
     limits = case.problem().limits
     assert limits.velocity == pytest.approx([2.5, 3.5, 0.125])
-    assert limits.acceleration == pytest.approx([9.0, 6.0, 0.5])
+    assert limits.ends("acceleration")[1] == pytest.approx([9.0, 7.0, 0.5])
+    assert limits.deceleration == pytest.approx([np.inf, 6.0, np.inf])
     assert np.isinf(limits.jerk).all()
     assert limits.position_lower == pytest.approx([-np.inf, -1.5, 0.0])
     assert limits.position_upper == pytest.approx([np.inf, 2.25, 0.4])
     text = Path("out.toml").read_text("utf-8")
-    said = "limits of velocity, acceleration and position from arm.urdf"
+    said = "limits of velocity, acceleration, deceleration and position from arm.urdf"
     assert f'note = "way-points from t.csv; {said}"' in text
     assert f"\n# L{said[1:]}\nvelocity = [2.5, 3.5, 0.125]\n" in text
     assert 'velocity = ["rad/s", "rad/s", "m/s"]' in text
@@ -142,10 +143,10 @@ def test_a_limit_that_is_given_comes_before_the_urdf(run: Run, folder: Path, arm
     assert run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *given, *units)[0] == 0
     limits = load_case("out.toml").problem().limits
     assert limits.velocity == pytest.approx(np.radians([30.0, 30.0]))
-    assert limits.acceleration == pytest.approx([6.0, 9.0])
+    assert limits.narrow.acceleration == pytest.approx([6.0, 9.0])
     assert limits.position_upper == pytest.approx([2.25, np.inf])
     text = Path("out.toml").read_text("utf-8")
-    assert "limits of acceleration and position from arm.urdf" in text
+    assert "limits of acceleration, deceleration and position from arm.urdf" in text
     assert 'acceleration = "deg/s^2"' in text
 
 
