@@ -27,6 +27,10 @@ UNITS = ("rad", "deg", "m", "cm", "mm")
 """Units of positions in a file without units of its own."""
 
 
+_GRADUAL = 0.2 * np.pi
+"""Largest step of an angle between two samples, rad, that a log has: 36°."""
+
+
 @dataclass(frozen=True, eq=False)
 class ForeignFile:
     """The content of a file."""
@@ -166,6 +170,8 @@ class _Asked:
         given = (samples.position, samples.velocity, samples.acceleration)
         position, velocity, acceleration = (x if x is None else x * factors for x in given)
         assert position is not None
+        if not controller:
+            self._refuse_wrapped(samples, position, [is_linear(u) for u in _each(units, count)])
         rounded = np.array([samples.rounding.of(order, count) * factors for order in range(3)])
         if self.noise is not None:
             rounded[0] = 0.0
@@ -184,6 +190,23 @@ class _Asked:
         except TrajgapError as error:
             raise CaseError(self.name, "", str(error)) from None
         return ForeignFile(words, found, _each(units, count), controller)
+
+    def _refuse_wrapped(self, samples: Samples, angles: Array, slides: list[bool]) -> None:
+        """Refuse angles of a log that step by a turn, which no joint makes between two samples."""
+        steps = np.diff(angles, axis=0)
+        turns = np.abs(steps) > np.pi
+        # Without the turns it moves gradually, and with them within one turn.
+        turns &= np.abs(np.diff(np.unwrap(angles, axis=0), axis=0)).max(axis=0) < _GRADUAL
+        turns &= np.ptp(angles, axis=0) <= 2.0 * np.pi * (1.0 + 1e-6)
+        turns[:, slides] = False
+        if len(steps) > 4 and turns.any():
+            k, j = (int(x) for x in np.argwhere(turns)[0])
+            raise CaseError(
+                self.name,
+                f"joint {samples.joints[j]}",
+                f"steps by a turn at {samples.time[k + 1]:g} s; if its angles are kept within "
+                "±180°, unwrap them (numpy.unwrap)",
+            )
 
     def polynomials(self, found: Mapping[str, Any]) -> ForeignFile:
         """A motion in rad and m."""

@@ -37,7 +37,9 @@ _UNIT = re.compile(r".*(?:[\[(][^\])]*[\])]|[ _./-](?P<unit>deg|degrees?|mm|cm))
 _GAP = r"[ ._:/-]"
 """What stands between a joint's name and such a word."""
 _ASIDE = re.compile(
-    rf"(.+{_GAP})?({_FORCES})s?({_GAP}.+)?{_GAP}?\d*([ _]?[\[(].*[\])])?", re.IGNORECASE
+    rf"index|idx|row|sample|frame|seq"
+    rf"|(.+{_GAP})?({_FORCES})s?({_GAP}.+)?{_GAP}?\d*([ _]?[\[(].*[\])])?",
+    re.IGNORECASE,
 )
 """A column that is left out."""
 
@@ -160,6 +162,8 @@ def samples_of_columns(
 
     ``half`` gives what the numbers of columns of one kind may be off by.
     """
+    # A row that a logger wrote twice says nothing new.
+    table = table[np.append(True, (table[1:] != table[:-1]).any(axis=1))]
     if table.shape[1] < 2:
         raise CaseError(name, "", "has one column; give time and a position per joint")
     if header:
@@ -191,6 +195,8 @@ def samples_of_columns(
     rounding = HalfUnits(float(half([time])[0]), rounded)
     position, velocity, acceleration = parts
     assert position is not None
+    if velocity is not None and len(position) > 4:
+        _refuse_other_unit(name, table[:, time], position, velocity)
     try:
         return Samples(
             tuple(joints) or labels,
@@ -202,6 +208,23 @@ def samples_of_columns(
         )
     except TrajgapError as error:
         raise CaseError(name, "", str(error)) from None
+
+
+def _refuse_other_unit(name: str, time: Array, position: Array, velocity: Array) -> None:
+    """Refuse velocities that are those of the positions but for radians and degrees."""
+    with np.errstate(all="ignore"):
+        moved = (np.diff(position, axis=0) / np.diff(time)[:, None]).ravel()
+        stated = (velocity[1:] + velocity[:-1]).ravel() / 2.0
+        alike = (moved @ stated) ** 2 / ((moved @ moved) * (stated @ stated))
+        ratio = (moved @ stated) / (stated @ stated)
+    for unit, factor in (("rad/s", np.rad2deg(1.0)), ("deg/s", np.deg2rad(1.0))):
+        if alike > 0.99 and abs(ratio / factor - 1.0) < 0.05:
+            other = "deg" if unit == "rad/s" else "rad"
+            raise CaseError(
+                name,
+                "velocity",
+                f"is in {unit} if positions are in {other}; give both in the same unit of angle",
+            )
 
 
 def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:

@@ -67,6 +67,38 @@ def test_numbered_columns_of_velocities_are_no_joints(tmp_path, header):
         read_motion(write(tmp_path, "d.csv", f"time,tau1,tau2,effort_1,current\n{rows}"))
 
 
+SPEEDS = np.sin(np.linspace(0.0, np.pi, 11)) * [[1.0], [-3.0]]
+"""Of two joints, in 11 samples at 0.1 s."""
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda q, v: (q, v), None),
+        (lambda q, v: (q[[0, 0, *range(1, 11), 10]], v[[0, 0, *range(1, 11), 10]]), None),
+        (lambda q, v: (q, np.rad2deg(v)), "velocity: is in deg/s if positions are in rad"),
+        (lambda q, v: (np.rad2deg(q), v), "velocity: is in rad/s if positions are in deg"),
+        (lambda q, v: (q, 30.0 * v), None),
+        (lambda q, v: (q % (2 * np.pi), v), r"joint b: steps by a turn at 0.[0-9] s; if it"),
+        (lambda q, v: (np.where(q < -0.9, q - 6.0, q), v), None),
+    ],
+)
+def test_logs_with_repeated_rows_other_units_and_wrapped_angles(tmp_path, change, words):
+    times = np.linspace(0.0, 1.0, 11)
+    way = np.insert(np.cumsum((SPEEDS[:, 1:] + SPEEDS[:, :-1]) / 20, axis=1), 0, 0.0, axis=1)
+    q, v = change(np.column_stack([way[0] + 0.1, way[1] + 0.5, times])[:, :2], SPEEDS.T)
+    if len(q) > 11:
+        times = times[[0, 0, *range(1, 11), 10]]
+    table = np.column_stack([np.arange(len(q)) * 0, times, q, v])
+    text = "\n".join(",".join(f"{x:.9f}" for x in one) for one in table)
+    path = write(tmp_path, "log.csv", f"index,time,a,b,a velocity,b velocity\n{text}\n")
+    if words is None:
+        assert read_motion(path).content.position.shape == (11, 2)
+    else:
+        with pytest.raises(CaseError, match=words):
+            read_motion(path)
+
+
 def test_a_table_without_header_in_units_of_its_own(tmp_path):
     path = write(tmp_path, "a.csv", "0 180 1000\n1 90 500\n")
     samples = read_motion(path, ("deg", "mm"), (1.8, 2.0), ("turn", "slide")).content
