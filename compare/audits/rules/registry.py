@@ -11,7 +11,7 @@ from .continuous_time import judge_bare_totals, judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
 from .linear_blends import judge_blends
-from .motion_numbers import judge_measures, judge_peaks, judge_values
+from .motion_numbers import judge_numbers
 from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
@@ -34,11 +34,9 @@ GROUPS = (
     judge_counts,
     judge_motions,
     judge_bare_totals,
-    judge_peaks,
+    judge_numbers,
     judge_peak_limits,
     judge_blends,
-    judge_measures,
-    judge_values,
     judge_places,
     judge_vertices,
     judge_scaling,
