@@ -191,6 +191,8 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
     return f"The claimed {shown} {what}.", {claim.id}
 
 
+# --- limits ---------------------------------------------------------------------------------------
+
 _Held = Mapping[str, Mapping[str, ClaimVerdict]]
 """What is known of the limits of printed durations, by claim and reading."""
 

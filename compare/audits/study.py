@@ -43,6 +43,7 @@ from ...problem.cases import (
     Claim,
     DurationsClaim,
     MotionValueClaim,
+    StatementClaim,
     TimeClaim,
 )
 from ..documents import capital, noted
@@ -106,8 +107,7 @@ class Study:
         self.options = options = replace(options, **given)
         self.case = case
         self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
-        selected = case.selections(options.problem, options.reading)
-        self.selected = tuple(Pair(*one) for one in selected)
+        self.selected = tuple(Pair(*p) for p in case.selections(options.problem, options.reading))
         self.readings = tuple(dict.fromkeys(one.reading for one in self.selected))
         self.pairs = tuple(one for one in self.selected if case.statement(*one).complete)
         default = case.default_reading.id
@@ -143,6 +143,10 @@ class Study:
             view.selected = view.pairs = (pair,)
             view.readings = (pair.reading,)
         return view
+
+    def statements(self, *checks: str) -> list[StatementClaim]:
+        """Its claims in words that say one of some things."""
+        return [c for c in self.claims if isinstance(c, StatementClaim) and c.checks in checks]
 
     @property
     def drawing(self) -> Study:
@@ -275,13 +279,12 @@ class Study:
     ) -> dict[str, Replays]:
         """Replays of an algorithm under some settings, each under its words."""
         which = f"{seeds} replays of {self.called(name)}"
-        where = in_words(self.case, *pair)
         return self.kept_replays.replayed(
             self.problem(pair),
             settings,
             seeds,
             self.options.workers,
-            lambda words: self.progress(f"{which}, {words}; {where}"),
+            lambda words: self.progress(f"{which}, {words}; {in_words(self.case, *pair)}"),
         )
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:

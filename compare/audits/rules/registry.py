@@ -18,7 +18,7 @@ from .other_places import judge_places
 from .peaks import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
-from .printed_joints import judge_equations, judge_joints
+from .printed_joints import judge_joints
 from .printed_tables import judge_tables
 from .profiles import judge_profiles
 from .replays import judge_replays
@@ -48,7 +48,6 @@ GROUPS = (
     cite_comparisons,
     list_open_points,
     judge_kinematics,
-    judge_equations,
 )
 """In the order in which their findings of one severity and id stand; a new rule adds its line."""
 
