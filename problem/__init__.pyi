@@ -3,6 +3,7 @@ from .cases import (
     Case as Case,
     CaseFile as CaseFile,
     FileLimits as FileLimits,
+    RoundingBox as RoundingBox,
     case_schema as case_schema,
     compare_transcriptions as compare_transcriptions,
     load_case as load_case,

@@ -11,11 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from .rounding import FEW_ROUNDINGS
-
-_ARRIVED = 1e-9
-"""How far a profile may miss the goal, and a phase may be negative, where all sizes are about 1:
-well above the rounding of a quartic's roots, well below any printed digit."""
+from .rounding import FEW_ROUNDINGS, ROUNDING
 
 
 class AxisState(NamedTuple):
@@ -237,7 +233,11 @@ def s_curves(
     first = AxisState(0.0, start.velocity / scale[1], start.acceleration / scale[2])
     last = AxisState(way / scale[0], finish.velocity / scale[1], finish.acceleration / scale[2])
     top, most = sizes.velocity / scale[1], sizes.acceleration / scale[2]
-    if not _can_end(last, top, most):
+    # An acceleration at the end began at 0 with a velocity nearer to the other limit.
+    earlier = last.velocity - copysign(last.acceleration**2 / 2.0, last.acceleration)
+    if max(abs(last.velocity), abs(earlier)) > top + FEW_ROUNDINGS:
+        return []
+    if abs(last.acceleration) > most + FEW_ROUNDINGS:
         return []
     braked = _braked(first, top, most)
     begin = braked.at(inf)
@@ -263,14 +263,6 @@ def s_curves(
 
 def _seen(start: AxisState, finish: AxisState, sign: float) -> tuple[AxisState, AxisState]:
     return (start, finish) if sign > 0.0 else (start.mirrored(), finish.mirrored())
-
-
-def _can_end(last: AxisState, top: float, most: float) -> bool:
-    """Whether a state within the limits can be reached from within them."""
-    # An acceleration at the end began at 0 with a velocity nearer to the other limit.
-    earlier = last.velocity - copysign(last.acceleration**2 / 2.0, last.acceleration)
-    within = max(abs(last.velocity), abs(earlier)) <= top + FEW_ROUNDINGS
-    return within and abs(last.acceleration) <= most + FEW_ROUNDINGS
 
 
 def _braked(first: AxisState, top: float, most: float) -> AxisProfile:
@@ -418,18 +410,17 @@ def _roots(coefficients: Sequence[float]) -> Iterator[float]:
 def _keeps(
     profile: AxisProfile, finish: AxisState, top: float, most: float, total: float | None
 ) -> bool:
-    """Whether a motion reaches the last state within the limits, to `_ARRIVED`.
+    """Whether a motion reaches the last state within the limits, where all sizes are about 1.
 
-    Where its time is given, its last position is not.
-
-    A velocity that starts above its limit may be so until it is first within.
+    It may miss by more than a quartic's roots are rounded by. Where its time is given, its last
+    position is not. A velocity that starts above its limit may be so until it is first within.
     """
-    if any(phase.time < -_ARRIVED for phase in profile.phases):
+    if any(phase.time < -ROUNDING for phase in profile.phases):
         return False
     corners = profile.corners
     missed = np.abs(np.subtract(corners[-1], finish))[0 if total is None else 1 :].max()
     return bool(
-        missed <= _ARRIVED
-        and not any(dropwhile(bool, (abs(one.velocity) > top + _ARRIVED for one in corners)))
-        and all(abs(one.acceleration) <= most + _ARRIVED for one in corners)
+        missed <= ROUNDING
+        and not any(dropwhile(bool, (abs(one.velocity) > top + ROUNDING for one in corners)))
+        and all(abs(one.acceleration) <= most + ROUNDING for one in corners)
     )

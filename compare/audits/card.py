@@ -204,10 +204,6 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
 # --- improvement ----------------------------------------------------------------------------------
 
 
-def _caveats(judgement: Judgement) -> set[CaveatKind | None]:
-    return {caveat.kind for caveat in judgement.caveats}
-
-
 def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | None, set[str]]:
     """Whether the claimed improvement follows, and the claims that the sentence speaks of."""
     improved = (c for c in study.case.claims if isinstance(c, ImprovementClaim))
@@ -216,7 +212,8 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
     claim = next(iter([*counted, *every]), None)
     if claim is None:
         return None, set()
-    doubtful = {c.id for c in every if CaveatKind.DOUBTED in _caveats(words[c.id])}
+    kinds = {c.id: {caveat.kind for caveat in words[c.id].caveats} for c in every}
+    doubtful = {one for one, own in kinds.items() if CaveatKind.DOUBTED in own}
     supported = {c.id for c in counted if words[c.id].verdict is ClaimVerdict.SUPPORTED} - doubtful
     if len(supported) == len(counted) > 1:
         which = "Both" if len(supported) == 2 else f"All {len(supported)}"

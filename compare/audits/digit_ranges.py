@@ -163,6 +163,9 @@ def _stretch(study: Study, reading: str) -> float | None:
     return max((one for one in stretches if isfinite(one) and one > 0), default=None)
 
 
+# --- ratios of durations --------------------------------------------------------------------------
+
+
 def optimum_called(problem: Problem, evidence: Evidence) -> str:
     """What the optimum of a problem is called in a sentence, with its evidence."""
     fixed = problem.ratios is not None

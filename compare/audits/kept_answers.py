@@ -145,6 +145,9 @@ def _judged_optimum(asked: AskedOptimum, left: Sequence[Any]) -> Solution:
     )
 
 
+# --- replays --------------------------------------------------------------------------------------
+
+
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint separately."""
 

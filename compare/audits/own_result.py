@@ -127,6 +127,9 @@ def _statements(case: Case) -> list[StatementClaim]:
     return [c for c in found if c.of]
 
 
+# --- totals of one result -------------------------------------------------------------------------
+
+
 def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     """Totals that other claims state of a row and that no value of its own digits rounds to.
 

@@ -12,8 +12,9 @@ from ...problem.cases import AnyClaim, Digits, TotalTimeClaim
 from .printed_row import PrintedRow
 from .study import Study
 
-_CLOSE = 1.01
-"""Ratio of both bounds up to which they are near each other."""
+GRID = 0.01
+"""Share of a time that a planner's grid or sampling may explain, and up to which two bounds are
+near each other: on its usual grids TOPPRA misses the shortest time by up to 0.4 %."""
 _FEWEST = 20
 """Sampled points from which two interpolations differ by little on a smooth path."""
 _RESERVE = 2.0
@@ -37,7 +38,7 @@ def close(row: PrintedRow[TotalTimeClaim]) -> bool:
     with np.errstate(invalid="ignore"):
         factors = [np.nanmax((a / b) ** [1.0, 0.5]) for a, b in ((loose, plain), (plain, tight))]
     best = path_time(row)
-    return best.upper <= _CLOSE * float(np.prod(factors)) * best.lower
+    return best.upper <= (1.0 + GRID) * float(np.prod(factors)) * best.lower
 
 
 def outside(row: PrintedRow[TotalTimeClaim]) -> float:

@@ -38,7 +38,12 @@ def provenance(study: Study, day: date | None = None) -> Provenance:
         libraries={"python": python, **{name: package_version(name) for name in LIBRARIES}},
         seeds=study.options.seeds,
         case_sha256=known(case.sha256, "the case was not read from a file"),
-        certificates=tuple(_certificates(study)),
+        certificates=tuple(
+            UsedCertificate(
+                file=file.name, sha256=sha256(file.read_bytes()).hexdigest(), subject=subject
+            )
+            for file, subject in certificate_files(study)
+        ),
         command=_command(study),
         citation=_citation(study, day, own),
     )
@@ -94,12 +99,6 @@ def _git(folder: Path, *arguments: str) -> str:
         timeout=5,
     )
     return done.stdout.strip()
-
-
-def _certificates(study: Study) -> Iterator[UsedCertificate]:
-    for file, subject in certificate_files(study):
-        digest = sha256(file.read_bytes()).hexdigest()
-        yield UsedCertificate(file=file.name, sha256=digest, subject=subject)
 
 
 def certificate_files(study: Study) -> Iterator[tuple[Path, Subject]]:

@@ -81,7 +81,10 @@ def spread_settings(
             changed = replace(cast(Any, algorithm), **changes)
         except TrajgapError:
             continue  # these values exclude each other, such as a least weight above the largest
-        said = ", ".join(f"{name} = {_shown(value)}" for name, value in changes.items())
+        said = ", ".join(
+            f"{name} = {value if isinstance(value, StrEnum) else format(value, 'g')}"
+            for name, value in changes.items()
+        )
         found[said] = cast(Algorithm[Any], changed)
     return found
 
@@ -105,7 +108,3 @@ def _drawn(name: str, current: Any, of: tuple[Any, ...], share: float) -> Any:
     value = low + share * (high - low)
     group = _GROUPS.get(name, 1)
     return group * round(value / group) if isinstance(current, int) else round(value, 3)
-
-
-def _shown(value: Any) -> str:
-    return str(value) if isinstance(value, StrEnum) else f"{value:g}"

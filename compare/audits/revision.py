@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ...nlp import PerJointSolution, Solution, Status, printed_problem_or_none
+from ...nlp import Status, printed_problem_or_none
 from ...problem import Array, Case, Printed, Problem, Verdict, check, from_si
 from ...problem.cases import (
     AnyClaim,
@@ -26,11 +26,10 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
-from .kept_answers import Replays
 from .printed_row import PrintedRow, rows_under
 from .rules import in_digits, recomputed, repeated_total, summed
 from .stated import RowClaim
-from .study import Pair, Study
+from .study import Pair, Study, T
 from .words import CLAIM, READINGS
 
 
@@ -79,6 +78,10 @@ def _shaped(before: Any, digits: Sequence[str]) -> Any:
     return tuple(numbers)
 
 
+_SHARED = ("joint_optimum", "per_joint", "relaxed", "runs", "spread_runs")
+"""What takes long and is the same where problem and algorithms are."""
+
+
 class Reworded(Study):
     """A study of a changed case, which asks the original for what the change leaves alone.
 
@@ -101,36 +104,25 @@ class Reworded(Study):
         )
         self.original = original
 
-    def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
-        """The original's, where it is the same question."""
-        return self._asked(self._alike(pair)).optimum(pair, joint)
+    def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """The original's answer, where it is asked the same question to the same digits."""
+        name, *about = key
+        if name in _SHARED and self._same(name, next(p for p in about if isinstance(p, Pair))):
+            return cast(T, getattr(self.original, name)(*about))
+        return super().once(key, compute)
 
-    def per_joint(self, pair: Pair) -> PerJointSolution:
-        """The original's, where it is the same question to the same digits."""
-        same = self._alike(pair) and self.half_digits(pair) == self.original.half_digits(pair)
-        return self._asked(same).per_joint(pair)
-
-    def relaxed(self, pair: Pair) -> Solution:
-        """The original's, where it is the same question."""
-        return self._asked(self._alike(pair)).relaxed(pair)
-
-    def runs(self, algorithm_id: str, pair: Pair) -> Replays:
-        """The original's, where the same algorithms search for the same."""
-        return self._asked(self._replays_alike(pair)).runs(algorithm_id, pair)
-
-    def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
-        """The original's, where the same algorithms search for the same."""
-        return self._asked(self._replays_alike(pair)).spread_runs(algorithm_id, pair)
+    def _same(self, name: str, pair: Pair) -> bool:
+        if name in ("runs", "spread_runs"):
+            return self._replays_alike(pair)
+        # Ranges of joints by themselves are as wide as half a digit of their totals.
+        digits = name != "per_joint" or self.half_digits(pair) == self.original.half_digits(pair)
+        return digits and self._alike(pair)
 
     @property
     def drawing(self) -> Study:
         """The original, where all problems and algorithms are the same."""
         same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
         return self.original if same else self
-
-    def _asked(self, same: bool) -> Study:
-        """Who answers: the original what it answers alike, else this study as any other."""
-        return self.original if same else cast(Study, super())
 
     def _alike(self, pair: Pair) -> bool:
         """Whether the changed case poses the very same problem, digit by digit."""

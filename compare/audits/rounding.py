@@ -195,8 +195,12 @@ def _judge(
         return RoundingVerdict(Rounding.UNDECIDED, worst, None, None)
     ball = Ball.between(q.lower, q.upper)
     target = 1.0 + TOLERANCE
-    least, most = _admissible(problem, durations)
-    root = bound_ratio(problem, least, most, ball)
+    # All of the box that `check` does not refuse for a duration outside its bounds; where that is
+    # empty, which only the last bits can make it, one end is as good as the other.
+    slack = (1.0 + TOLERANCE) * (1.0 + 4.0 * EPS)
+    least = np.maximum(durations.lower, problem.duration_lower / slack * (1.0 - 4.0 * EPS))
+    most = np.minimum(durations.upper, problem.duration_upper * slack)
+    root = bound_ratio(problem, np.minimum(least, most), np.maximum(least, most), ball)
     if root.value > target:
         return RoundingVerdict(Rounding.BREAKS, worst, root.place, root.value)
     best, passed = _search(problem, durations, q, at_print)
@@ -220,15 +224,6 @@ def _outside_bounds(problem: Problem, durations: RoundingBox) -> Place | None:
     if not ratio[k] > 1.0 + TOLERANCE:
         return None
     return Place(None, "duration", k, None, float(ratio[k]))
-
-
-def _admissible(problem: Problem, durations: RoundingBox) -> tuple[Array, Array]:
-    """All of the box that `check` does not refuse for a duration outside its bounds."""
-    slack = (1.0 + TOLERANCE) * (1.0 + 4.0 * EPS)
-    lower = np.maximum(durations.lower, problem.duration_lower / slack * (1.0 - 4.0 * EPS))
-    upper = np.minimum(durations.upper, problem.duration_upper * slack)
-    # An empty range can only come from the last bits: then one end is as good as the other.
-    return np.minimum(lower, upper), np.maximum(lower, upper)
 
 
 def _search(

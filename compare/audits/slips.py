@@ -244,6 +244,8 @@ def turns(spots: Sequence[Spot], joint: str, unit: str, radians: Sequence[float]
             )
 
 
+# --- motions of what is changed -------------------------------------------------------------------
+
 _Tried = tuple[Sequence[Slip], Array, Array]
 """Changes of one kind; the peaks of the motions that they lead to, and the limits, both of the
 shape (changes, joints, 3)."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import replace
-from typing import Any, NamedTuple, Self, TypeVar, cast
+from functools import wraps
+from typing import Any, Concatenate, NamedTuple, ParamSpec, Self, TypeVar, cast
 
 import numpy as np
 
@@ -42,6 +43,7 @@ from ...problem.cases import (
     Claim,
     DurationsClaim,
     MotionValueClaim,
+    StatementClaim,
     TimeClaim,
 )
 from ..documents import capital, noted
@@ -57,6 +59,8 @@ from .stated import (
     timed_along_path,
 )
 
+P = ParamSpec("P")
+S = TypeVar("S", bound="Study")
 T = TypeVar("T")
 SPREAD_SEEDS = 3
 """Seeds under each of the spread settings, of which there are sixteen: enough to see a median
@@ -77,6 +81,17 @@ class Total(NamedTuple):
     interval: tuple[float, float]
 
 
+def kept(method: Callable[Concatenate[S, P], T]) -> Callable[Concatenate[S, P], T]:
+    """Make a method of a study compute what it is asked once."""
+
+    @wraps(method)
+    def asked(self: S, /, *about: P.args, **named: P.kwargs) -> T:
+        key = (method.__name__, *about, *named.values())
+        return self.once(key, lambda: method(self, *about, **named))
+
+    return asked
+
+
 class Study:
     """A case, the selected problems and readings, and what was computed for them.
 
@@ -92,8 +107,7 @@ class Study:
         self.options = options = replace(options, **given)
         self.case = case
         self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
-        selected = case.selections(options.problem, options.reading)
-        self.selected = tuple(Pair(*one) for one in selected)
+        self.selected = tuple(Pair(*p) for p in case.selections(options.problem, options.reading))
         self.readings = tuple(dict.fromkeys(one.reading for one in self.selected))
         self.pairs = tuple(one for one in self.selected if case.statement(*one).complete)
         default = case.default_reading.id
@@ -130,6 +144,10 @@ class Study:
             view.readings = (pair.reading,)
         return view
 
+    def statements(self, *checks: str) -> list[StatementClaim]:
+        """Its claims in words that say one of some things."""
+        return [c for c in self.claims if isinstance(c, StatementClaim) and c.checks in checks]
+
     @property
     def drawing(self) -> Study:
         """The study for whose problems and algorithms instances are drawn."""
@@ -150,9 +168,10 @@ class Study:
         """Each of them under the main reading."""
         return tuple(Pair(one, self.main_reading) for one in self.problems)
 
+    @kept
     def problem(self, pair: Pair) -> Problem:
         """Problem of the case, with its coupling."""
-        return self.once(("problem", pair), lambda: self.case.problem(*pair))
+        return self.case.problem(*pair)
 
     def limited(self, pair: Pair) -> bool:
         """Whether a problem limits anything that moves."""
@@ -244,6 +263,7 @@ class Study:
             return f"{name} is not replayed: {error}."
         return None
 
+    @kept
     def runs(self, algorithm_id: str, pair: Pair) -> Replays:
         """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
 
@@ -252,24 +272,19 @@ class Study:
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None or self.unreplayed(algorithm_id, pair) is not None:
             return ()
-        seeds = self.options.seeds
-        return self.once(
-            ("runs", algorithm_id, pair),
-            lambda: self._replayed(pair, algorithm_id, {LISTED: algorithm}, seeds)[LISTED],
-        )
+        return self._replayed(pair, algorithm_id, {LISTED: algorithm}, self.options.seeds)[LISTED]
 
     def _replayed(
         self, pair: Pair, name: str, settings: Mapping[str, Algorithm[Any]], seeds: int
     ) -> dict[str, Replays]:
         """Replays of an algorithm under some settings, each under its words."""
         which = f"{seeds} replays of {self.called(name)}"
-        where = in_words(self.case, *pair)
         return self.kept_replays.replayed(
             self.problem(pair),
             settings,
             seeds,
             self.options.workers,
-            lambda words: self.progress(f"{which}, {words}; {where}"),
+            lambda words: self.progress(f"{which}, {words}; {in_words(self.case, *pair)}"),
         )
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
@@ -282,43 +297,39 @@ class Study:
             return {}
         return spread_settings(algorithm, self._block(algorithm_id).settings)
 
+    @kept
     def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
         """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
         if self.unreplayed(algorithm_id, pair) is not None:
             return {}
-
-        def compute() -> dict[str, Replays]:
-            others = {n: one for n, one in self.settings(algorithm_id).items() if n != LISTED}
-            few = self._replayed(pair, algorithm_id, others, min(SPREAD_SEEDS, self.options.seeds))
-            return {LISTED: self.runs(algorithm_id, pair), **few}
-
-        return self.once(("spread", algorithm_id, pair), compute)
+        others = {n: one for n, one in self.settings(algorithm_id).items() if n != LISTED}
+        few = self._replayed(pair, algorithm_id, others, min(SPREAD_SEEDS, self.options.seeds))
+        return {LISTED: self.runs(algorithm_id, pair), **few}
 
     def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
         """Best known answer with shared durations, of all joints or of one; certified if proved."""
+        return self.joint_optimum(pair, joint if len(self.problem(pair).joints) > 1 else None)
 
-        def compute() -> Solution:
-            problem = self.problem(pair)
-            if timed_along_path(self.case, pair.problem):
-                return Solution(problem, Status.FAILED, PATH_ALONE)
-            which = "all joints" if joint is None else f"joint {joint}"
-            self.progress(f"optimum of {which}; {in_words(self.case, *pair)}")
-            index = None if joint is None else problem.joints.index(joint)
-            one = problem if index is None else problem.joint(index)
-            exact = printed_problem_or_none(self.case.statement(*pair), index)
-            interval = None if exact is None else self._proved(pair, exact)
-            lower = 0.0 if interval is None else float(interval.lower)
-            try:
-                known = self.known_motions(pair, joint)
-                asked = AskedOptimum(one, known=known, lower=lower, other_route=True)
-                found = self.kept_optima.optimum(asked)
-            except TrajgapError as error:
-                return Solution(one, Status.FAILED, str(error))
-            return with_interval(found, interval)
-
-        if joint is not None and len(self.problem(pair).joints) == 1:
-            joint = None
-        return self.once(("optimum", pair, joint), compute)
+    @kept
+    def joint_optimum(self, pair: Pair, joint: str | None) -> Solution:
+        """The same; of all joints, or of one of several."""
+        problem = self.problem(pair)
+        if timed_along_path(self.case, pair.problem):
+            return Solution(problem, Status.FAILED, PATH_ALONE)
+        which = "all joints" if joint is None else f"joint {joint}"
+        self.progress(f"optimum of {which}; {in_words(self.case, *pair)}")
+        index = None if joint is None else problem.joints.index(joint)
+        one = problem if index is None else problem.joint(index)
+        exact = printed_problem_or_none(self.case.statement(*pair), index)
+        interval = None if exact is None else self._proved(pair, exact)
+        lower = 0.0 if interval is None else float(interval.lower)
+        try:
+            known = self.known_motions(pair, joint)
+            asked = AskedOptimum(one, known=known, lower=lower, other_route=True)
+            found = self.kept_optima.optimum(asked)
+        except TrajgapError as error:
+            return Solution(one, Status.FAILED, str(error))
+        return with_interval(found, interval)
 
     def known_motions(self, pair: Pair, joint: str | None = None) -> Array:
         """Printed and replayed durations; those that keep the limits serve as incumbents.
@@ -346,25 +357,22 @@ class Study:
         positive = [h for h in usable if (h > 0).all()]
         return np.array(positive).reshape(-1, problem.segments)
 
+    @kept
     def per_joint(self, pair: Pair) -> PerJointSolution:
         """Each joint separately, with the ranges within half a printed digit and 1e-6 s."""
-
-        def compute() -> PerJointSolution:
-            self.progress(f"each joint separately; {in_words(self.case, *pair)}")
-            slacks = tuple(dict.fromkeys((*self.half_digits(pair), OPTIMUM_SLACK)))
-            problem = self.problem(pair)
-            try:
-                return solve_per_joint(
-                    problem,
-                    slacks=slacks,
-                    solver=lambda one: self.optimum(pair, one.joints[0]),
-                    search=self._kept_nearby,
-                )
-            except TrajgapError as error:
-                joints = tuple(self.optimum(pair, label) for label in problem.joints)
-                return PerJointSolution(problem, longest_status(joints), str(error), joints=joints)
-
-        return self.once(("per joint", pair), compute)
+        self.progress(f"each joint separately; {in_words(self.case, *pair)}")
+        slacks = tuple(dict.fromkeys((*self.half_digits(pair), OPTIMUM_SLACK)))
+        problem = self.problem(pair)
+        try:
+            return solve_per_joint(
+                problem,
+                slacks=slacks,
+                solver=lambda one: self.optimum(pair, one.joints[0]),
+                search=self._kept_nearby,
+            )
+        except TrajgapError as error:
+            joints = tuple(self.optimum(pair, label) for label in problem.joints)
+            return PerJointSolution(problem, longest_status(joints), str(error), joints=joints)
 
     def _proved(self, pair: Pair, exact: ExactProblem) -> ProvedInterval | None:
         """The proved interval of a problem, or of some of its joints, which it names."""
@@ -384,60 +392,53 @@ class Study:
                 halves.append(round((box.upper - box.lower) / 2, 12))
         return (max(halves),) if halves else ()
 
+    @kept
     def relaxed(self, pair: Pair) -> Solution:
         """Optimum of the relaxed family: at least quintic everywhere, C2, other terms free."""
-
-        def compute() -> Solution:
-            problem = self.problem(pair)
-            if timed_along_path(self.case, pair.problem):
-                return Solution(problem, Status.FAILED, PATH_ALONE)
-            given = as_piecewise(problem.curve)
-            if given is None:
-                why = "only declared piecewise polynomials have a relaxed family"
-                return Solution(problem, Status.FAILED, why)
-            self.progress(f"relaxed family; {in_words(self.case, *pair)}")
-            inner = problem.segments - 1
-            family = Interpolant(
-                tuple(max(5, degree) for degree in given.degrees),
-                (2,) * inner,
-                (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
-                virtual=given.virtual,
-                name="relaxed family",
+        problem = self.problem(pair)
+        if timed_along_path(self.case, pair.problem):
+            return Solution(problem, Status.FAILED, PATH_ALONE)
+        given = as_piecewise(problem.curve)
+        if given is None:
+            why = "only declared piecewise polynomials have a relaxed family"
+            return Solution(problem, Status.FAILED, why)
+        self.progress(f"relaxed family; {in_words(self.case, *pair)}")
+        inner = problem.segments - 1
+        family = Interpolant(
+            tuple(max(5, degree) for degree in given.degrees),
+            (2,) * inner,
+            (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
+            virtual=given.virtual,
+            name="relaxed family",
+        )
+        relaxed = replace(problem, curve=family, coupling=Coupling.SHARED, ratios=None)
+        settled = len(family.free_derivatives)
+        if settled < family.free:
+            why = (
+                f"the relaxed family has {family.free} free coefficients per joint, and "
+                f"derivatives at the way-points settle {settled} of them"
             )
-            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED, ratios=None)
-            settled = len(family.free_derivatives)
-            if settled < family.free:
-                why = (
-                    f"the relaxed family has {family.free} free coefficients per joint, and "
-                    f"derivatives at the way-points settle {settled} of them"
-                )
-                return Solution(relaxed, Status.FAILED, why)
-            member = self.freed(pair)
-            asked = AskedOptimum(relaxed)
-            if member.found and not given.free:
-                curve = fit(given, problem.waypoints, member.durations)
-                nodal = free_values(family, curve)[None]
-                asked = asked._replace(known=member.durations, known_nodal=nodal)
-            return self.kept_optima.optimum(asked)
+            return Solution(relaxed, Status.FAILED, why)
+        member = self.freed(pair)
+        asked = AskedOptimum(relaxed)
+        if member.found and not given.free:
+            nodal = free_values(family, fit(given, problem.waypoints, member.durations))[None]
+            asked = asked._replace(known=member.durations, known_nodal=nodal)
+        return self.kept_optima.optimum(asked)
 
-        return self.once(("relaxed", pair), compute)
-
+    @kept
     def freed(self, pair: Pair) -> Solution:
         """The optimum with each duration free; equal to `optimum` if no ratios are fixed."""
         problem, own = self.problem(pair), self.optimum(pair)
         if problem.ratios is None:
             return own
-
-        def compute() -> Solution:
-            known = self.known_motions(pair)
-            known = np.vstack([known, own.durations]) if own.found else known
-            one = replace(problem, ratios=None)
-            try:
-                return self.kept_optima.optimum(AskedOptimum(one, known=known))
-            except TrajgapError as error:
-                return Solution(one, Status.FAILED, str(error))
-
-        return self.once(("freed", pair), compute)
+        known = self.known_motions(pair)
+        known = np.vstack([known, own.durations]) if own.found else known
+        one = replace(problem, ratios=None)
+        try:
+            return self.kept_optima.optimum(AskedOptimum(one, known=known))
+        except TrajgapError as error:
+            return Solution(one, Status.FAILED, str(error))
 
     def fits(self, claim: Claim, pair: Pair) -> bool:
         """Whether a claim is about a problem, its curve, and as many durations as it has."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -15,26 +15,11 @@ from ..printed import CHOICES, Printed, UnitOrEach, spelling_hint
 from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
-from .clue import AnyClue
 from .data_files import robot_file, robot_ids
 from .digits import RoundingBox
-from .instances import InstancesBlock
 from .labels import reading_labels
 from .overlay import on_line, overlaid
-from .schema import (
-    AlgorithmBlock,
-    Assumption,
-    Cartesian,
-    CaseFile,
-    Column,
-    NotCheckable,
-    ProblemBlock,
-    Reading,
-    Robot,
-    Source,
-    Table,
-    Waypoints,
-)
+from .schema import CaseFile, ProblemBlock, Reading, Waypoints
 from .statement import Statement
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
@@ -43,6 +28,17 @@ _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed",
 """Stands for the one reading of a file that lists none."""
 
 B = TypeVar("B", AnyClaim, ProblemBlock, Reading)
+T = TypeVar("T")
+
+
+class _Block(Generic[T]):
+    """A block of a case file, as an attribute of the case that was read from it."""
+
+    def __init__(self, read: Callable[[CaseFile], T]) -> None:
+        self._read = read
+
+    def __get__(self, case: Case, kind: type[Case] | None = None) -> T:
+        return self._read(case.document)
 
 
 @dataclass(frozen=True)
@@ -55,25 +51,32 @@ class Case:
     sha256: str | None = None
     """Hash of the file; None if the case was not read from a file."""
 
-    @property
-    def id(self) -> str:
-        """Permanent id of the case."""
-        return self.document.id
-
-    @property
-    def title(self) -> str:
-        """Title of the case."""
-        return self.document.title
-
-    @property
-    def source(self) -> Source:
-        """Where the numbers were printed."""
-        return self.document.source
-
-    @property
-    def robot(self) -> Robot:
-        """The robot and its joint labels."""
-        return self.document.robot
+    id = _Block(lambda file: file.id)
+    """Permanent id of the case."""
+    title = _Block(lambda file: file.title)
+    """Title of the case."""
+    source = _Block(lambda file: file.source)
+    """Where the numbers were printed."""
+    robot = _Block(lambda file: file.robot)
+    """The robot and its joint labels."""
+    claims = _Block(lambda file: file.claims)
+    """What the paper claims."""
+    clues = _Block(lambda file: file.clues)
+    """Evidence for or against readings, apart from the claims."""
+    tables = _Block(lambda file: file.tables)
+    """The tables that group the claims."""
+    algorithms = _Block(lambda file: file.algorithms)
+    """The paper's algorithms and their settings."""
+    instances = _Block(lambda file: file.families)
+    """Blocks of instances on which relative claims are examined."""
+    assumptions = _Block(lambda file: file.assumptions)
+    """What the paper leaves open, and what was chosen."""
+    columns = _Block(lambda file: file.columns)
+    """Printed numbers that are neither problem data nor claims."""
+    cartesian = _Block(lambda file: file.cartesian)
+    """Printed positions of the robot's end."""
+    not_checkable = _Block(lambda file: file.not_checkable)
+    """What cannot be checked from the extracted text."""
 
     @property
     def problems(self) -> tuple[ProblemBlock, ...]:
@@ -84,51 +87,6 @@ class Case:
     def readings(self) -> tuple[Reading, ...]:
         """The admissible readings; one called "as-printed" if the file names none."""
         return self.document.readings or (_ONLY_READING,)
-
-    @property
-    def claims(self) -> tuple[AnyClaim, ...]:
-        """What the paper claims."""
-        return self.document.claims
-
-    @property
-    def clues(self) -> tuple[AnyClue, ...]:
-        """Evidence for or against readings, apart from the claims."""
-        return self.document.clues
-
-    @property
-    def tables(self) -> tuple[Table, ...]:
-        """The tables that group the claims."""
-        return self.document.tables
-
-    @property
-    def algorithms(self) -> tuple[AlgorithmBlock, ...]:
-        """The paper's algorithms and their settings."""
-        return self.document.algorithms
-
-    @property
-    def instances(self) -> tuple[InstancesBlock, ...]:
-        """Blocks of instances on which relative claims are examined."""
-        return self.document.families
-
-    @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """What the paper leaves open, and what was chosen."""
-        return self.document.assumptions
-
-    @property
-    def columns(self) -> tuple[Column, ...]:
-        """Printed numbers that are neither problem data nor claims."""
-        return self.document.columns
-
-    @property
-    def cartesian(self) -> tuple[Cartesian, ...]:
-        """Printed positions of the robot's end."""
-        return self.document.cartesian
-
-    @property
-    def not_checkable(self) -> tuple[NotCheckable, ...]:
-        """What cannot be checked from the extracted text."""
-        return self.document.not_checkable
 
     @cached_property
     def labels(self) -> dict[str, str]:

@@ -9,7 +9,18 @@ from typing import Annotated, Literal, Self
 from pydantic import AfterValidator, Discriminator, Field, StrictInt, model_validator
 
 from ..errors import TrajgapError
-from ..printed import Id, Length, Number, OneOrEachLength, Printed, PrintedRows, Strict, Text, fault
+from ..printed import (
+    Id,
+    Length,
+    Number,
+    OneOrEachLength,
+    Printed,
+    PrintedRows,
+    Strict,
+    Text,
+    fault,
+    kinds_of,
+)
 from ..problem import Coupling
 
 
@@ -22,6 +33,10 @@ def _day(text: str) -> str:
 
 Day = Annotated[Text, AfterValidator(_day)]
 """A day of the calendar, such as "2026-01-31"."""
+
+
+_NAMED = "name the curve there as the paper does"
+"""How to fix a key that belongs to another curve than the problem's."""
 
 
 class AuthorsAnswer(Strict):
@@ -92,12 +107,9 @@ class DurationsClaim(TimeClaim):
     @model_validator(mode="after")
     def _blends_of_another_curve(self) -> Self:
         for key in ("blends", "blend_acceleration"):
-            if getattr(self, key) is not None and self.other_curve is None:
-                raise fault(
-                    f".{key}", "requires other_curve; name the curve there as the paper does"
-                )
-        if self.end_blends is not None and self.blends is None and self.blend_acceleration is None:
-            raise fault(".end_blends", "requires blends or blend_acceleration; add one of them")
+            self.require(key, "other_curve", _NAMED)
+        if self.blends is None and self.blend_acceleration is None:
+            self.require("end_blends", "blends or blend_acceleration", "add one of them")
         if self.blends is not None and self.blend_acceleration is not None:
             raise fault(
                 ".blend_acceleration",
@@ -159,10 +171,9 @@ class ProfiledClaim(TimeClaim):
 
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
-        if self.profile is not None and self.other_curve is None:
-            raise fault(".profile", "requires other_curve; name the curve there as the paper does")
-        if self.path == "straight" and self.profile is None:
-            raise fault(".path", "requires profile; add it, or leave this out")
+        self.require("profile", "other_curve", _NAMED)
+        if self.path == "straight":
+            self.require("path", "profile")
         if self.along_path and (self.profile is not None or self.other_curve is None):
             raise fault(".path", f'"{self.path}" requires other_curve, and excludes profile')
         for key, profile, needed in (
@@ -226,8 +237,7 @@ class ImprovementClaim(Claim):
     def _two_claims(self) -> Self:
         if self.slower == self.faster:
             raise fault(".faster", "is the same claim as slower; name two claims")
-        if self.base is not None and self.percent is None:
-            raise fault(".base", "requires percent; add it, or leave this out")
+        self.require("base", "percent")
         return self
 
 
@@ -402,8 +412,7 @@ class StatementClaim(Claim):
         if self.checks in ("varies_most", "varies_much") and self.joint is None:
             how = self.checks.removeprefix("varies_")
             raise fault(".joint", f"is missing; name the joint that is said to vary {how}")
-        if self.against is not None and self.algorithm is None:
-            raise fault(".against", "requires algorithm; name the one that is compared with it")
+        self.require("against", "algorithm", "name the one that is compared with it")
         return self
 
 
@@ -424,18 +433,5 @@ AnyClaim = Annotated[
 ]
 """Any kind of claim, told apart by ``quantity``."""
 
-QUANTITY_KINDS = (
-    "durations",
-    "maximum",
-    "total_time",
-    "phases",
-    "improvement",
-    "peak",
-    "measure",
-    "value",
-    "convergence",
-    "conditions",
-    "control_vertices",
-    "statement",
-)
+QUANTITY_KINDS = kinds_of(AnyClaim, "quantity")
 """The values of ``quantity``."""

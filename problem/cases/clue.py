@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Discriminator, Field, model_validator
 
 from ..files import MOST
-from ..printed import CHOICES, Id, Number, Strict, Text, TextOrEach, fault
+from ..printed import CHOICES, Id, Number, Strict, Text, TextOrEach, fault, kinds_of
 
 Known = Literal["velocity", "acceleration", "jerk"]
 """Derivatives that have a unit."""
@@ -90,7 +90,7 @@ AnyClue = Annotated[
 ]
 """Any kind of clue, told apart by ``kind``."""
 
-CLUE_KINDS = ("axis", "data-sheet", "smooth", "half-turns")
+CLUE_KINDS = kinds_of(AnyClue, "kind")
 """The values of ``kind``."""
 
 

@@ -73,7 +73,8 @@ def all_faults(error: ValidationError) -> list[tuple[str, str]]:
     """
     details = error.errors(include_url=False)
     # A list is also called too short for the entries that have faults of their own.
-    details = [one for one in details if not (one["type"] == "too_short" and _faulty(one, details))]
+    inside = {one["loc"][:k] for one in details for k in range(len(one["loc"]))}
+    details = [one for one in details if one["type"] != "too_short" or one["loc"] not in inside]
     # A misspelt key is also a missing one; the spelling is what to fix.
     details.sort(key=lambda detail: detail["type"] != "unknown_key")
     found = Faults("")
@@ -88,12 +89,6 @@ _MISSING = {
     'optimum" without a number, use quantity = "statement" with checks = "optimal"',
 }
 """How to fix a missing key that the paper may not print."""
-
-
-def _faulty(fault: Mapping[str, Any], details: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether another fault lies inside the value that a fault is about."""
-    place = tuple(fault["loc"])
-    return any(one is not fault and tuple(one["loc"][: len(place)]) == place for one in details)
 
 
 def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -29,6 +29,7 @@ from .fields import (
     VelocityUnits as VelocityUnits,
     describe as describe,
     fault as fault,
+    kinds_of as kinds_of,
     plain_number as plain_number,
     read_number as read_number,
     spelling_hint as spelling_hint,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from difflib import get_close_matches
 from functools import partial
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 from pydantic import (
     BeforeValidator,
@@ -29,8 +29,6 @@ from .described import Described
 from .rounded import Printed
 from .units import CHOICES, Quantity, check_unit
 
-MOST_POSES = 500
-"""Poses of a straight line in a case file: each takes some milliseconds of inverse kinematics."""
 RATIO_CHOICES = (*RATIO_WORDS, "free")
 """Words for ratios of durations in case files; "free" takes back what the file fixes."""
 
@@ -82,6 +80,17 @@ class Strict(Described):
             raise fault(*unknown[0], "unknown_key", unknown[1:])
         return data
 
+    def require(self, key: str, other: str, fix: str = "add it, or leave this out") -> None:
+        """Refuse a key without another one that it goes with."""
+        if getattr(self, key) is not None and getattr(self, other, None) is None:
+            raise fault(f".{key}", f"requires {other}; {fix}")
+
+
+def kinds_of(union: Any, key: str) -> tuple[str, ...]:
+    """The values of the key that tells the models of an annotated union apart."""
+    models = get_args(get_args(union)[0])
+    return tuple(get_args(one.model_fields[key].annotation)[0] for one in models)
+
 
 def describe(raw: object) -> str:
     """Name a raw value in the words of a TOML file."""
@@ -123,10 +132,6 @@ def _not_negative(number: Printed) -> Printed:
     if number.fraction < 0:
         raise TrajgapError(f"{number.text} is negative; give 0 or more")
     return number
-
-
-def _positive_length(raw: object) -> Printed:
-    return _not_negative(read_number(raw))
 
 
 def _ratio(raw: object) -> Printed:
@@ -246,7 +251,7 @@ def _read_by(read: Any, schema: dict[str, Any], plain: Any = plain_number) -> tu
 
 Number = Annotated[Printed, *_read_by(read_number, _NUMBER_SCHEMA)]
 """A string is a number rounded to its digits, a bare number is exact."""
-Length = Annotated[Printed, *_read_by(_positive_length, _NUMBER_SCHEMA)]
+Length = Annotated[Printed, *_read_by(lambda raw: _not_negative(read_number(raw)), _NUMBER_SCHEMA)]
 """A `Number` of 0 or more."""
 Ratio = Annotated[Printed, *_read_by(_ratio, _NUMBER_SCHEMA)]
 """A `Number` above 0."""
@@ -262,10 +267,6 @@ UpperPosition = Annotated[Printed | None, *_read_by(_position_limit("+"), _LIMIT
 """A `Number`, or inf (kept as None)."""
 
 
-def _form(raw: object) -> str:
-    return "list" if isinstance(raw, list | tuple) else "scalar"
-
-
 def _nonempty(raw: object) -> object:
     if isinstance(raw, list | tuple) and not raw:
         raise TrajgapError("is an empty list; give one value for all, or one each")
@@ -278,7 +279,7 @@ T = TypeVar("T")
 E = TypeVar("E")
 _OneOrList = Annotated[
     Annotated[T, Tag("scalar")] | Annotated[tuple[E, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
+    Discriminator(lambda raw: "list" if isinstance(raw, list | tuple) else "scalar"),
 ]
 """One value, or a list of entries of another type."""
 _OneOrEach = _OneOrList[T, T]
@@ -334,11 +335,9 @@ def _units(quantity: Quantity) -> tuple[Any, ...]:
     one = _unit_schema(quantity)
     several = {"type": "array", "minItems": 1, "items": one}
     # What is given may also be the list that a first serializer made of it.
-    return _read_by(read, {"anyOf": [one, several]}, _listed)
-
-
-def _listed(units: UnitOrEach | list[str]) -> str | list[str] | None:
-    return list(units) if isinstance(units, list | tuple) else units
+    return _read_by(
+        read, {"anyOf": [one, several]}, lambda x: list(x) if isinstance(x, list | tuple) else x
+    )
 
 
 def _unit_schema(quantity: Quantity) -> dict[str, Any]:

@@ -224,18 +224,15 @@ def to_si(number: Printed, unit: str) -> Measured:
     1.3962634015954636
     """
     factor = scale(unit).bounds
-    value = _float(number.fraction * factor[0])
+    exact = number.fraction * factor[0]
+    # Above 1e300 outward rounding could still overflow.
+    if abs(exact) > Fraction(10) ** 300:
+        raise TrajgapError("the number is too large; at most 1e300 is read")
+    value = float(exact)
     if number.exact:
         return Measured(value, value, value)
     ends = [end * bound for end in number.interval for bound in factor]
     return Measured(value, down(min(ends)), up(max(ends)))
-
-
-def _float(number: Fraction) -> float:
-    # Above 1e300 outward rounding could still overflow.
-    if abs(number) > Fraction(10) ** 300:
-        raise TrajgapError("the number is too large; at most 1e300 is read")
-    return float(number)
 
 
 def from_si(value: float, unit: str) -> float:

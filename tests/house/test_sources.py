@@ -11,7 +11,7 @@ from support.checkout import ROOT
 
 FOLDERS = {"problem", "heuristics", "nlp", "compare", "verify"}
 NAME = re.compile(r"_?[A-Z][A-Z0-9_]*")
-EXPLAIN = ("TypeVar", "Explained")  # what says itself what it is
+EXPLAIN = ("TypeVar", "ParamSpec", "Explained")  # what says itself what it is
 
 
 def bare_constants(source: str) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -266,36 +267,31 @@ def examined_entry(result: InstancesResult) -> ExaminedInstances:
 
 def _reductions(result: InstancesResult) -> Iterator[Reduction]:
     """Of each reading and effect, under each objective, for all steps together and for each."""
-    for reading in result.readings:
-        for effect in Effect:
-            alone = effect is Effect.CURVE
-            for at, objective in enumerate(result.block.objectives[: 1 if alone else None]):
-                for step in (None, *result.block.lengths):
-                    found = distribution(result.reductions(reading, effect, at, step))
-                    empty = found.missing == found.pairs
-                    low, high = (
-                        result.median_interval(reading, effect, at)
-                        if step is None
-                        else (np.nan, np.nan)
-                    )
-                    apart = Why(
-                        "instances are resampled over all steps together"
-                        if step is not None
-                        else "fewer than two instances have answers"
-                    )
-                    none = Why("no pair of runs has two answers")
-                    numbers: dict[str, Any] = {
-                        k: none if empty else v for k, v in vars(found).items()
-                    }
-                    yield Reduction(
-                        reading=reading,
-                        effect=effect,
-                        objective=None if alone else objective,
-                        step=step,
-                        **numbers | {"pairs": found.pairs, "missing": found.missing},
-                        median_from=low if np.isfinite(low) else apart,
-                        median_to=high if np.isfinite(high) else apart,
-                    )
+    none = Why("no pair of runs has two answers")
+    for reading, effect in product(result.readings, Effect):
+        alone = effect is Effect.CURVE
+        objectives = list(enumerate(result.block.objectives))
+        for (at, objective), step in product(
+            objectives[:1] if alone else objectives, (None, *result.block.lengths)
+        ):
+            found = distribution(result.reductions(reading, effect, at, step))
+            low, high = np.nan, np.nan
+            apart = Why("instances are resampled over all steps together")
+            if step is None:
+                low, high = result.median_interval(reading, effect, at)
+                apart = Why("fewer than two instances have answers")
+            numbers: dict[str, Any] = dict(vars(found))
+            if found.missing == found.pairs:
+                numbers = dict.fromkeys(numbers, none)
+            yield Reduction(
+                reading=reading,
+                effect=effect,
+                objective=None if alone else objective,
+                step=step,
+                **numbers | {"pairs": found.pairs, "missing": found.missing},
+                median_from=low if np.isfinite(low) else apart,
+                median_to=high if np.isfinite(high) else apart,
+            )
 
 
 def _instance(result: InstancesResult, first: Sample) -> Instance:

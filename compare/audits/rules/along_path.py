@@ -8,14 +8,11 @@ import numpy as np
 
 from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
-from ..path_times import close, outside, path_time
+from ..path_times import GRID, close, outside, path_time
 from ..printed_row import PrintedRow
 from ..study import Study
 from .rule_group import Explained, rule_group
 
-_GRID = 0.01
-"""Share of a time that a planner's grid or sampling may explain: on its usual grids TOPPRA misses
-the shortest time by up to 0.4 %."""
 _SAMPLED = (
     "Both times hold for all paths that differ from the spline through the way-points by at most "
     "twice as much as a spline of another degree does."
@@ -71,7 +68,7 @@ def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Findi
         "longer",
         f"is {far} longer, as a motion may be",
     )
-    gridded = 0.0 < abs(away) <= _GRID
+    gridded = 0.0 < abs(away) <= GRID
     if away < 0.0 and not gridded:
         verdict, kind, said = ClaimVerdict.INCONSISTENT, "shorter", f"is {far} shorter"
     elif away == 0.0 and close(row):

@@ -351,9 +351,12 @@ def _found(
         note = "Neither rounding, cut-off digits nor sampling was found to explain the difference"
         note += "s." if open_ > 1 else "."
     clash = verdict is ClaimVerdict.INCONSISTENT
+    fit = {True: "fits", False: "off"}
+    # The class of a peak; of other numbers whether they fit.
+    words = [fit[one.fits] if one.linear is None else str(one.kind) for one in told]
     return rule.finding(
         row,
-        ", ".join(map(_word, told)),
+        ", ".join(words),
         f"For the printed durations ({called(row.claim)}): {said}.",
         note,
         verdict=verdict,
@@ -364,11 +367,6 @@ def _found(
         root=f"{claim.quantity}s of {row.claim.id}" if clash else "",
         between=(claim.id, row.claim.id) if clash else (),
     )
-
-
-def _word(one: Beside) -> str:
-    """The class of a peak; of other numbers whether they fit."""
-    return str(one.kind) if one.linear is not None else "fits" if one.fits else "off"
 
 
 TG203 = Explained(
@@ -384,15 +382,6 @@ TG203 = Explained(
     "and 1223 is the same number in degrees.",
     basis=Basis.COMPUTED,
 )
-
-
-@rule_group(TG203)
-def judge_peaks(study: Study) -> Iterator[Finding]:
-    """Findings of TG203."""
-    without = "No durations are printed from which this peak could be computed."
-    return _judged(study, TG203, PeakClaim, beside, peak_described, without)
-
-
 TG208 = Explained(
     "TG208",
     "Printed means and integrals follow from the printed durations",
@@ -405,14 +394,6 @@ TG208 = Explained(
     "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
     basis=Basis.COMPUTED,
 )
-
-
-@rule_group(TG208)
-def judge_measures(study: Study) -> Iterator[Finding]:
-    """Findings of TG208."""
-    return _judged(study, TG208, MeasureClaim, measure_beside, measure_described)
-
-
 TG211 = Explained(
     "TG211",
     "Printed values at one place follow from the printed durations",
@@ -426,7 +407,10 @@ TG211 = Explained(
 )
 
 
-@rule_group(TG211)
-def judge_values(study: Study) -> Iterator[Finding]:
-    """Findings of TG211."""
-    return _judged(study, TG211, ValueClaim, value_beside, value_described)
+@rule_group(TG203, TG208, TG211)
+def judge_numbers(study: Study) -> Iterator[Finding]:
+    """Findings of TG203, TG208 and TG211."""
+    without = "No durations are printed from which this peak could be computed."
+    yield from _judged(study, TG203, PeakClaim, beside, peak_described, without)
+    yield from _judged(study, TG208, MeasureClaim, measure_beside, measure_described)
+    yield from _judged(study, TG211, ValueClaim, value_beside, value_described)

@@ -13,6 +13,7 @@ from ...documents import Basis, ClaimVerdict, Finding
 from ..named_profiles import RESTING, profile_called, resting_total
 from ..printed_row import PrintedRow
 from ..profile_motions import with_own_limit
+from ..rounding import FEW_ROUNDINGS
 from ..study import Study
 from .rule_group import Explained
 
@@ -30,8 +31,6 @@ TG304 = Explained(
     "in phases.",
     basis=Basis.COMPUTED,
 )
-_CLOSE = 1e-12
-"""Share to which a way is computed: well below any printed digit."""
 
 
 class _Ways(NamedTuple):
@@ -88,7 +87,7 @@ def _way(row: PrintedRow[TotalTimeClaim], total: float, digits: Digits) -> float
     above = 1.0
     while late(above) < 0.0:
         above *= 2.0
-    return float(brentq(late, 0.0, above, xtol=_CLOSE * above, rtol=_CLOSE))
+    return float(brentq(late, 0.0, above, xtol=FEW_ROUNDINGS * above, rtol=FEW_ROUNDINGS))
 
 
 def _together(group: list[_Ways]) -> Iterator[Finding]:

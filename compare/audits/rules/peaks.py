@@ -292,11 +292,10 @@ TG209 = Explained(
 @rule_group(TG209)
 def judge_peak_limits(study: Study) -> Iterator[Finding]:
     """Findings of TG209."""
-    for claim in study.claims:
-        if isinstance(claim, StatementClaim) and claim.checks == "within_limits":
-            for peak in study.claims:
-                if isinstance(peak, PeakClaim):
-                    yield from _beyond(study, claim, peak)
+    for claim in study.statements("within_limits"):
+        for peak in study.claims:
+            if isinstance(peak, PeakClaim):
+                yield from _beyond(study, claim, peak)
 
 
 def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Finding]:

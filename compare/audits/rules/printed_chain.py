@@ -47,7 +47,9 @@ class _Match:
     @property
     def misses(self) -> bool:
         """Whether some position is missed, rounded or cut off, whatever the signs."""
-        return all(_misses(near, self.slack) for near in (self.near, *self.signed))
+        most = [_CUT_OFF * one for one in self.slack]
+        every = (zip(near, most, strict=True) for near in (self.near, *self.signed))
+        return all(any(one.lower > far for one, far in each) for each in every)
 
     @property
     def worst(self) -> float:
@@ -262,10 +264,6 @@ def _held(chain: Chain, joints: Joints, k: int) -> tuple[Array, float]:
 
 def _fits(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
     return all(n.upper <= s for n, s in zip(near, slack, strict=True))
-
-
-def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
-    return any(n.lower > _CUT_OFF * s for n, s in zip(near, slack, strict=True))
 
 
 _OPEN = {

@@ -40,14 +40,34 @@ TG602 = Explained(
 )
 
 
-@rule_group(TG110, TG602, without_waypoints=True)
+TG603 = Explained(
+    "TG603",
+    "Printed kinematic equations hold on the printed chain",
+    "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
+    "random joint angles.",
+    "Supported if all hold as printed. Otherwise not checkable, with the correction that "
+    "would make each of them hold: signs, exponents and indices are easily lost in extracted "
+    "text.",
+    "13 of 16 equations hold; another holds once a missing plus sign is added.",
+    basis=Basis.KINEMATICS,
+)
+
+
+@rule_group(TG110, TG602, TG603, without_waypoints=True)
 def judge_joints(study: Study) -> Iterator[Finding]:
-    """Findings of TG110 and TG602."""
-    for claim in study.claims:
-        if isinstance(claim, StatementClaim) and claim.checks in ("varies_most", "varies_much"):
-            yield _varies(study, claim)
-        elif isinstance(claim, StatementClaim) and claim.checks == "above":
-            yield _above(study, claim)
+    """Findings of TG110, TG602 and TG603.
+
+    No equation is ever held against a paper: whether a sign was lost in print or in the extraction
+    cannot be told from the text.
+    """
+    for claim in study.statements("varies_most", "varies_much"):
+        yield _varies(study, claim)
+    for claim in study.statements("above"):
+        yield _above(study, claim)
+    for claim in study.statements("equations"):
+        chain = study.case.chain()
+        assert chain is not None
+        yield _judged(claim, study.case.document.equations, chain)
 
 
 def _varies(study: Study, claim: StatementClaim) -> Finding:
@@ -148,33 +168,6 @@ def _beside(
     ]
     changed = tuple(name for name, sign in zip("xy", signs, strict=True) if sign < 0)
     return sqrt(sum(x * x for x in away)), changed
-
-
-TG603 = Explained(
-    "TG603",
-    "Printed kinematic equations hold on the printed chain",
-    "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
-    "random joint angles.",
-    "Supported if all hold as printed. Otherwise not checkable, with the correction that "
-    "would make each of them hold: signs, exponents and indices are easily lost in extracted "
-    "text.",
-    "13 of 16 equations hold; another holds once a missing plus sign is added.",
-    basis=Basis.KINEMATICS,
-)
-
-
-@rule_group(TG603, without_waypoints=True)
-def judge_equations(study: Study) -> Iterator[Finding]:
-    """One finding for the statement that the equations of the file hold.
-
-    Nothing is ever held against a paper: whether a sign was lost in print or in the extraction
-    cannot be told from the text.
-    """
-    for claim in study.claims:
-        if isinstance(claim, StatementClaim) and claim.checks == "equations":
-            chain = study.case.chain()
-            assert chain is not None
-            yield _judged(claim, study.case.document.equations, chain)
 
 
 def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain) -> Finding:

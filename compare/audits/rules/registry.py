@@ -11,14 +11,14 @@ from .continuous_time import judge_bare_totals, judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
 from .linear_blends import judge_blends
-from .motion_numbers import judge_measures, judge_peaks, judge_values
+from .motion_numbers import judge_numbers
 from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
 from .peaks import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
-from .printed_joints import judge_equations, judge_joints
+from .printed_joints import judge_joints
 from .printed_tables import judge_tables
 from .profiles import judge_profiles
 from .replays import judge_replays
@@ -34,11 +34,9 @@ GROUPS = (
     judge_counts,
     judge_motions,
     judge_bare_totals,
-    judge_peaks,
+    judge_numbers,
     judge_peak_limits,
     judge_blends,
-    judge_measures,
-    judge_values,
     judge_places,
     judge_vertices,
     judge_scaling,
@@ -50,7 +48,6 @@ GROUPS = (
     cite_comparisons,
     list_open_points,
     judge_kinematics,
-    judge_equations,
 )
 """In the order in which their findings of one severity and id stand; a new rule adds its line."""
 

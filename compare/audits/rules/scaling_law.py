@@ -36,9 +36,7 @@ TG301 = Explained(
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
     claims = [c for c in study.claims if isinstance(c, RowClaim)]
-    statements = [
-        c for c in study.claims if isinstance(c, StatementClaim) and c.checks == "optimal"
-    ]
+    statements = study.statements("optimal")
     for slow, fast in permutations(claims, 2):
         if slow.problem == fast.problem or slow.joint != fast.joint:
             continue

@@ -256,6 +256,9 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
             yield f"joint {label} {where} with a {quantity} of {value}"
 
 
+# --- control vertices -----------------------------------------------------------------------------
+
+
 @dataclass(frozen=True)
 class Vertex:
     """One printed control vertex beside the interval that the printed way-points allow.

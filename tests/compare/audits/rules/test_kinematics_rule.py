@@ -10,7 +10,7 @@ from support.checkout import ROOT
 from support.findings import study_of
 from support.made_up import ARM, entry, paper, readings, sentence
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
-from trajgap.compare.audits.rules.printed_joints import judge_equations
+from trajgap.compare.audits.rules.printed_joints import judge_joints
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.problem import CaseError
@@ -227,7 +227,7 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
         equation = entry("equations", id="e", where="equation (4)", **keys)
         claim = sentence("holds", "equations")
         study = study_of(case_text([], EXACT, claim, equation))
-        (found,) = judge_equations(study)
+        (found,) = judge_joints(study)
         assert (found.rule, found.claim, found.verdict) == ("TG603", "holds", verdict)
         assert found.severity is Severity.INFO
         assert said in found.message
