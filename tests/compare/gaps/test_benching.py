@@ -97,8 +97,8 @@ def test_success_interval() -> None:
 
 
 def test_vargha_delaney() -> None:
-    def a12(first: np.ndarray, second: np.ndarray) -> float:
-        return compare_pair(first, second)["vargha_delaney"]
+    def a12(*totals: np.ndarray) -> float:
+        return compare_pair(*totals)["vargha_delaney"]
 
     # By counting: 3 of (1 | 2, 3, 4), 2.5 of (2 | ...), 1.5 of (3 | ...), out of 9; and the
     # measure's own identities.
