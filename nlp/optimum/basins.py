@@ -15,6 +15,7 @@ from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 from ..clock import time_up
 from .decided import Local
 from .descent import Descent, descend
+from .judgement import on_floor
 from .starts import LogBox, box_above, equal_start, stretching
 
 HOPELESS = 10.0
@@ -101,8 +102,7 @@ def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Ar
 
 def _worth(excess: Array, total: Array, scale: float) -> Array:
     """What is minimised: the total where the limits are kept, else the excess, above any total."""
-    kept = excess <= 1e-9
-    return np.where(kept, total / scale, 1e6 * (1.0 + excess))
+    return np.where(excess <= 1e-9, total / scale, 1e6 * (1.0 + excess))
 
 
 def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
@@ -200,7 +200,8 @@ def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
         local = replace(ends[end], iterations=0) if end in ends else as_local(problem, end)
         if local is not None:
             found.append(local)
-            ends |= {end: local} if end.converged else {}
+            if end.converged and not on_floor(end.durations, floor).any():
+                ends[end] = local
     return found
 
 

@@ -176,9 +176,8 @@ def descend(
 ) -> Descent:
     """Shorten a motion within its limits until no step gains.
 
-    The curve is a determined one of any kind; the start, s, need not keep the limits. The answer is
-    one of the ends of earlier descents where a motion that is no shorter comes near to it, each
-    duration within a factor of e to the power of ``near``.
+    The curve is a determined one of any kind; the start, s, need not keep the limits. If a motion
+    comes within ``near`` of an earlier end in log durations and is no shorter, it ends there.
     """
     rows = _onto_limits(problem, start, box)
     if rows.worst > KEPT:
