@@ -24,10 +24,11 @@ from ...problem import (
     check,
     shown_bound,
 )
+from ...problem.checks import worst_ratios
 from .decided import decided, kept
 from .feasibility import SURE, apart, impossible
 from .solution import Route, Solution, Status
-from .starts import equal_start, first_nodal, worst_ratios
+from .starts import equal_start, first_nodal
 
 HALVINGS = 40
 """Times that a total whose infimum is 0 is halved, while the checker still passes it."""

@@ -17,8 +17,8 @@ from ...problem import (
     fit,
     peak_gradients,
 )
-from ...problem.checks import signed_parts
-from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory, valued
+from ...problem.checks import SidedPeaks, extrema_at
+from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory
 
 Indices = NDArray[np.int64]
 
@@ -167,49 +167,6 @@ def near_limits(
     return where, whole[4, at], side[at], excess[at], size[at]
 
 
-@dataclass(frozen=True, eq=False)
-class _Parts:
-    """Accelerations of joints whose deceleration has a limit of its own, as far as near it.
-
-    One row for each stretch on which speed, acceleration and jerk keep their signs: at the end
-    where the acceleration is larger.
-    """
-
-    places: Places
-    value: Array
-    braking: NDArray[np.bool_]
-    ratio: Array
-    turning: NDArray[np.bool_]
-    """Whether the place is a root of the speed inside a piece, and moves with it."""
-
-    @classmethod
-    def of(cls, problem: Problem, trajectory: Trajectory) -> _Parts:
-        """Those above `NEAR` of their limit; the first of equal neighbours counts."""
-        limits, found = problem.limits, [np.zeros((7, 0))]
-        for j in np.flatnonzero(limits.braking).tolist():
-            v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
-            low, high, _, growth = signed_parts(v, a)
-            ends = np.stack([low, high])
-            values = valued(a[:, None, None], ends)
-            last = (np.abs(values[1]) > np.abs(values[0]))[None].astype(np.int64)
-            place, value = (np.take_along_axis(of, last, 0)[0] for of in (ends, values))
-            size = np.where(growth > 0.0, limits.ends("acceleration")[1][j], limits.deceleration[j])
-            ratio = np.abs(value) / size
-            i, k = np.nonzero((low < high) & (growth != 0.0) & (ratio > NEAR))
-            s, falls = place[i, k], growth[i, k] < 0.0
-            slow = np.abs(valued(v[:, k], s)) <= STILL * np.abs(v[:, k]).sum(axis=0)
-            turning = slow & (s > 0.0) & (s < 1.0)
-            rows = np.array([np.full(i.size, j), k, s, value[i, k], falls, ratio[i, k], turning])
-            # What ends one stretch or piece and begins the next is one row of each kind.
-            at = np.round(trajectory.times(k, s) / trajectory.total_time, 9)
-            _, first = np.unique(np.stack([at, falls]), axis=1, return_index=True)
-            found.append(rows[:, np.sort(first)])
-        j, k, s, value, falls, ratio, turning = np.hstack(found)
-        order = np.full(j.size, 2)
-        places = Places(j.astype(np.int64), k.astype(np.int64), order, s)
-        return cls(places, value, falls > 0.0, ratio, turning > 0.0)
-
-
 def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactRows:
     """Excesses near or above 0 and their gradients; one infinite excess where there is no curve.
 
@@ -219,8 +176,8 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
     try:
         trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         at, value, side, excess, size = near_limits(problem, trajectory, NEAR)
-        parts = _Parts.of(problem, trajectory)
-        points = _extrema(trajectory, at, value) + _extrema(trajectory, parts.places, parts.value)
+        parts = SidedPeaks.of(problem, trajectory, NEAR)
+        points = extrema_at(trajectory, at, value) + parts.points(trajectory)
         side = np.append(side, np.sign(parts.value))
         excess = np.append(excess, np.log(parts.ratio) / 2.0)
         size = np.append(size, 2.0 * np.abs(parts.value))
@@ -229,9 +186,8 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
             found = peak_gradients(problem, h, points, nodal)
             slope = found.durations * h
             if parts.turning.any():
-                slope[len(at.s) :][parts.turning] -= (
-                    _moved(problem, h, trajectory, parts, nodal) * h
-                )
+                moved = parts.moved(problem, h, trajectory, nodal)
+                slope[len(at.s) :][parts.turning] -= moved * h
             if free:
                 slope = np.hstack([slope, _by_nodal(problem, points, found.nodal)])
     except CurveError:
@@ -243,26 +199,6 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
     braking = np.append(np.zeros(len(at.s), dtype=bool), parts.braking)
     slope = slope * (side / size)[:, None]
     return ExactRows(h, excess, slope, tuple(points), side, stretched, braking)
-
-
-def _extrema(trajectory: Trajectory, at: Places, value: Array) -> list[Extremum]:
-    columns = at.joint, at.segment, at.order, at.s, trajectory.times(at.segment, at.s), value
-    return [Extremum(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
-
-
-def _moved(
-    problem: Problem, h: Array, trajectory: Trajectory, parts: _Parts, nodal: Array | None
-) -> Array:
-    """How accelerations at roots of the speed change since those move: by jerk/a times the speed's.
-
-    The root moves in time by −dv/a.
-    """
-    points = _extrema(trajectory, parts.places, parts.value)
-    turning = np.flatnonzero(parts.turning)
-    roots = [replace(points[i], order=1, value=0.0) for i in turning]
-    jerks = [trajectory.values(e.segment, e.joint, 3, np.array(e.s)) for e in roots]
-    share = np.array(jerks) / parts.value[turning]
-    return np.asarray(share[:, None] * peak_gradients(problem, h, roots, nodal).durations)
 
 
 def _by_nodal(problem: Problem, points: list[Extremum], slope: Array) -> Array:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, fit
+from ...problem.checks import worst_ratios
 from ...problem.curves import Trajectory
 from ..clock import seconds_left, time_up
 from .decided import Local
@@ -24,7 +25,7 @@ from .limit_rows import NEAR, near_limits
 from .optimality import KKT, KKT_TOLERANCE, kkt, sparse_kkt
 from .pieces import Indices, Rows, ca
 from .program import Program
-from .starts import DENSE, equal_start, slowed, worst_ratios
+from .starts import DENSE, equal_start, slowed
 
 FLAT = (1e-6, 1e-2)
 """Second derivative by the piece's parameter, in shares of the limit, below which a row stays at

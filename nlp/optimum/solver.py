@@ -170,11 +170,8 @@ def _solve(problem: Problem, ask: _Ask) -> Solution:
     return _solve_itself(problem, ask)
 
 
-NARROW = (
-    "searched within the smaller of acceleration and deceleration: a motion that uses the larger "
-    "one may be shorter"
-)
-"""Beside an answer of the NLP, whose rows know no sign of the speed."""
+NARROW = "acceleration and deceleration were both kept within the smaller of their limits"
+"""Beside an answer of the NLP, whose rows do not depend on the sign of the speed."""
 
 
 def _in_narrow_limits(problem: Problem, ask: _Ask) -> Solution:
@@ -242,15 +239,11 @@ def _continued(problem: Problem, motion: Local, route: Route) -> Solution:
 
 
 def _moves_throughout(problem: Problem) -> bool:
-    """Whether rounds of the NLP apply: each segment moves, and something is limited.
-
-    They know no sign of the speed, which tells a limit of deceleration from one of acceleration.
-    """
-    if problem.limits.braking.any():
-        return False
+    """Whether rounds of the NLP apply: segments move, something is limited, none by braking."""
     curve, sides = as_piecewise(problem.curve), problem.limits.sides
     moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
     limited = (np.isfinite(sides) & (sides > 0)).any()
+    limited &= not problem.limits.braking.any()
     return curve is not None and not curve.free and bool(moves.all() and limited)
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
-from ...problem.checks import one_sided_sizes
-from ...problem.curves import Trajectory
+from ...problem.checks import worst_ratios
 
 DENSE = 24
 """Segments up to which a wide search and dense descents come first: their gradients have
@@ -120,27 +119,6 @@ def way_start(problem: Problem) -> Array:
     if not np.isfinite(h).all():
         return equal_start(problem)
     return np.asarray(np.clip(h, problem.duration_lower, problem.duration_upper))
-
-
-def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
-    """By how much each segment would have to be stretched, were it alone."""
-    worst = np.zeros(len(trajectory.durations))
-    below, above = problem.limits.sides
-    for r in range(1, 1 + below.shape[1]):
-        wanted = np.isfinite(below[:, r - 1]) | np.isfinite(above[:, r - 1])
-        if not wanted.any():
-            continue
-        places, values = trajectory.turns(r)
-        limit = np.where(values > 0.0, above[:, r - 1], below[:, r - 1])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.where(wanted & (limit > 0.0), np.abs(values) / limit, 0.0)
-        ratio = np.where(np.isnan(places), 0.0, ratio)
-        worst = np.maximum(worst, ratio.max(axis=(0, 2)) ** (1.0 / r))
-    for j in np.flatnonzero(problem.limits.braking):
-        v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
-        own = problem.limits.ends("acceleration")[1][j], problem.limits.deceleration[j]
-        worst = np.maximum(worst, np.sqrt(one_sided_sizes(v, a).T / own).max(axis=1))
-    return worst
 
 
 def random_starts(problem: Problem, count: int, generator: np.random.Generator) -> Array:

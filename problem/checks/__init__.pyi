@@ -11,6 +11,7 @@ from .evaluation import (
     keeps_limits as keeps_limits,
     peak_gradients as peak_gradients,
     reachable_total as reachable_total,
+    worst_ratios as worst_ratios,
 )
 from .jumps import Jump as Jump
 from .one_sided import (
@@ -18,3 +19,4 @@ from .one_sided import (
     one_sided_sizes as one_sided_sizes,
     signed_parts as signed_parts,
 )
+from .sided_peaks import SidedPeaks as SidedPeaks, extrema_at as extrema_at

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
-from ..curves import Asked, Extremum, PeakGradients, as_durations
+from ..curves import Asked, Extremum, PeakGradients, Trajectory, as_durations
 from ..errors import TrajgapError
 from ..limits import USUAL, Limits, half_range
 from ..problem import Problem
@@ -239,6 +239,27 @@ def _capped_question(problem: Problem, tolerance: float) -> _Question:
     values, divisors, asked, plain = _fixed_question(problem)
     caps = np.where(asked.wanted, (1 + tolerance) * divisors, np.inf)
     return values, divisors, replace(asked, caps=caps) if plain else asked, plain
+
+
+def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
+    """By how much each segment would have to be stretched, were it alone."""
+    worst = np.zeros(len(trajectory.durations))
+    below, above = problem.limits.sides
+    for r in range(1, 1 + below.shape[1]):
+        wanted = np.isfinite(below[:, r - 1]) | np.isfinite(above[:, r - 1])
+        if not wanted.any():
+            continue
+        places, values = trajectory.turns(r)
+        limit = np.where(values > 0.0, above[:, r - 1], below[:, r - 1])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.where(wanted & (limit > 0.0), np.abs(values) / limit, 0.0)
+        ratio = np.where(np.isnan(places), 0.0, ratio)
+        worst = np.maximum(worst, ratio.max(axis=(0, 2)) ** (1.0 / r))
+    for j in np.flatnonzero(problem.limits.braking):
+        v, a = (trajectory.derivatives(r)[:, :, j] for r in (1, 2))
+        own = problem.limits.ends("acceleration")[1][j], problem.limits.deceleration[j]
+        worst = np.maximum(worst, np.sqrt(one_sided_sizes(v, a).T / own).max(axis=1))
+    return worst
 
 
 def reachable_total(

@@ -20,12 +20,14 @@ from trajgap.problem import (
     check,
     cubic_spline,
     cubic_spline_virtual,
+    fit,
     keeps_limits,
     piecewise,
     rest_to_rest,
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.problem.checks import worst_ratios
 from trajgap.problem.motions import JointLimits, as_motion, check_motion
 
 problem_with = partial(two_joints, limits=Limits([5.0, 3.0], [8.0, 11.0]))
@@ -231,6 +233,7 @@ def test_a_side_of_zero_forbids_that_side_alone() -> None:
     forward = Limits(velocity=[[0, 2]])
     assert check(Problem(rising, forward, curve), [1.0]).verdict is Verdict.PASS
     back = check(Problem(-rising, forward, curve), [1.0])
+    assert worst_ratios(Problem(-rising, forward, curve), fit(curve, -rising, [1.0])) == 0.0
     assert back.verdict is Verdict.VIOLATED
     assert back.feasible_time is None
     assert not keeps_limits(Problem(-rising, forward, curve), np.array([[1.0]]), 1e-9)[0]

@@ -12,7 +12,7 @@ from trajgap.nlp.optimum.closed_forms import CUT_SHORT
 from trajgap.nlp.optimum.pieces import Rows
 from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import beside, carried, near_rows, program_search
-from trajgap.nlp.optimum.starts import way_start, worst_ratios
+from trajgap.nlp.optimum.starts import way_start
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -25,6 +25,7 @@ from trajgap.problem import (
     fit,
     quintic_spline,
 )
+from trajgap.problem.checks import worst_ratios
 
 SEGMENTS = 26
 

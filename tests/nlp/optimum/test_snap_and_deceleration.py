@@ -124,7 +124,7 @@ def test_where_the_nlp_answers_the_smaller_size_counts_and_is_named(curve: Curve
     found, narrow = solve(problem), solve(replace(problem, limits=APART.narrow))
     assert found.status is Status.FEASIBLE
     assert found.total_time == pytest.approx(narrow.total_time, rel=1e-9)
-    assert "the smaller of acceleration and deceleration" in str(found.why)
+    assert "acceleration and deceleration were both kept within the smaller" in str(found.why)
 
 
 @pytest.mark.parametrize(("limits", "said"), [(APART, "deceleration"), (SNAP, "snap")])
