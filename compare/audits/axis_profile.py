@@ -143,7 +143,7 @@ def trapezoids(
         begin, last = _seen(start, finish, sign)
         least = max(begin.velocity, last.velocity)
         if total is None:
-            peaks = _speeds(begin, last, sizes)
+            peaks = _speed(begin, last, sizes)
         else:
             # A higher peak takes longer by its distance over A and over D, whatever its sign.
             pace = 1.0 / sizes.acceleration + 1.0 / sizes.braking
@@ -157,8 +157,12 @@ def trapezoids(
     return found
 
 
-def _speeds(start: AxisState, finish: AxisState, sizes: Sizes) -> list[tuple[float, float]]:
-    """Largest velocities of the motions to the goal that rise first, and how long they last."""
+def _speed(start: AxisState, finish: AxisState, sizes: Sizes) -> list[tuple[float, float]]:
+    """Largest velocity of the motion to the goal that rises first, and how long it lasts.
+
+    The list is empty if there is none. Of two such motions it is the longer one: from the time of
+    the other one on, the axis cannot arrive.
+    """
 
     def way(velocity: float) -> float:
         size = sizes.acceleration if velocity > 0.0 else sizes.braking
@@ -173,8 +177,8 @@ def _speeds(start: AxisState, finish: AxisState, sizes: Sizes) -> list[tuple[flo
     if bend * top**2 < needed:
         return [(top, (needed - top**2 * bend) / top)]
     room = FEW_ROUNDINGS * max(abs(start.velocity), abs(finish.velocity))
-    peak = sqrt(max(needed, 0.0) / bend)
-    return [(max(one, least), 0.0) for one in {peak, -peak} if one >= least - room]
+    peak = sqrt(max(needed, 0.0) / bend) if bend else 0.0
+    return [(max(peak, least), 0.0)] if peak >= least - room else []
 
 
 def _ramp(start: AxisState, velocity: float, sizes: Sizes) -> AxisProfile:

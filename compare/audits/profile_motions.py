@@ -34,6 +34,8 @@ _CORNERS = 1024
 """Combinations of ends of what digits leave: so many profiles of one joint take a few seconds, and
 of n joints that arrive together an n-th is made. Where there are more, they are drawn: of 30
 numbers that add up, the largest drawn sum is half of the largest."""
+_ALONG = 0.999
+"""Cosine of the largest angle (2.6°) between a way and a state along it: digits are rounded."""
 SIZES = ("largest", "smallest")
 """Places of a motion that are values."""
 _Laws = tuple[AxisProfile, ...]
@@ -159,6 +161,16 @@ class ProfileMotion:
             for axes in self.question.axes(self.straight)
         )
         return sum(max(law.total_time for one in every if one for law in one) for every in alone)
+
+    @property
+    def along_line(self) -> bool:
+        """Whether all joints could move on a straight line from one end to the other."""
+        ways = self.question.points[[1, -1]] - self.question.points[[0, -2]]
+        return all(
+            abs(way @ state) >= _ALONG * np.linalg.norm(way) * np.linalg.norm(state)
+            for way, end in zip(ways, self.question.ends, strict=True)
+            for state in end.T
+        )
 
     @property
     def starts_outside(self) -> bool:

@@ -51,8 +51,6 @@ from .one_way import TG304, judge_one_way
 from .rule_group import rule_group
 
 _Profiled = TotalTimeClaim | PhasesClaim
-_ALONG = 0.999
-"""Cosine of the largest angle (2.6°) between a way and a state along it: digits are rounded."""
 
 
 def total_time(motion: ProfileMotion) -> list[float]:
@@ -79,17 +77,6 @@ class _Asked:
     def between(self) -> str:
         """Which states the profile joins."""
         return "from rest to rest" if self.resting else "between the states at both ends"
-
-    @property
-    def along_line(self) -> bool:
-        """Whether all joints could move on a straight line from one end to the other."""
-        question = self.every()[0].question
-        ways = question.points[[1, -1]] - question.points[[0, -2]]
-        return all(
-            abs(way @ state) >= _ALONG * np.linalg.norm(way) * np.linalg.norm(state)
-            for way, end in zip(ways, question.ends, strict=True)
-            for state in end.T
-        )
 
     def every(self, profile: str = "") -> list[ProfileMotion]:
         """The profile, or another one, at the printed numbers and at the ends of their digits."""
@@ -257,7 +244,7 @@ def _total_beside(asked: _Asked) -> Finding:
         if not fits and totals.spans(_ends(number)):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
             said = "lies within its jump"
-        elif not fits and apart and number.value > plain and asked.along_line:
+        elif not fits and apart and number.value > plain and asked.every()[0].along_line:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
             said = (
                 "is longer, as that of a profile on a straight line may be, which is not computed"

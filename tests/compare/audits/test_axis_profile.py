@@ -69,17 +69,12 @@ def test_s_curves_between_random_states_take_ruckigs_time(count: int) -> None:
     assert compared > 0.8 * count
 
 
-def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
+def test_reversed_trapezoids_swap_both_limits() -> None:
     """Played backwards, speeding up is slowing down."""
     rng = np.random.default_rng(32)
     for k in range(500):
         start, finish, sizes = drawn(rng, k)
         start, finish = start._replace(acceleration=0.0), finish._replace(acceleration=0.0)
-        one = sizes._replace(jerk=math.inf)
-        found = shortest_trapezoid(start, finish, one)
-        assert found.total_time == pytest.approx(
-            by_ruckig((start, finish, one)), rel=1e-7, abs=1e-7
-        )
         if abs(start.velocity) > sizes.velocity:
             continue
         braking = sizes._replace(own=float(rng.uniform(0.2, 3)) * sizes.acceleration)
