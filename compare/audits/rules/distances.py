@@ -31,7 +31,7 @@ from ..rounding import ROUNDING, meet, rounds_to
 from ..stated import RowClaim, called, called_under, other_objective
 from ..study import Study, Total
 from ..words import LIMITS, OPTIMAL, seconds
-from .continuous_time import broken
+from .judged_rows import broken
 from .rule_group import INFORMS, Explained, rule_group
 
 _BELOW = (

@@ -13,7 +13,7 @@ from ..printed_row import PrintedRow, printed_rows
 from ..stated import RowClaim, called
 from ..study import Study
 from ..words import percent
-from .continuous_time import broken
+from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
 from .rule_group import INFORMS, Explained, rule_group

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from ....problem.cases import Claim
 from ...documents import Basis, Finding
-from ..printed_row import PrintedRow
 from ..study import Study
 
 ON_DIGITS = "A claim that fits only if digits were cut off instead of rounded gets a warning."
@@ -18,6 +17,19 @@ INFORMS = "It informs. No claim is supported or refuted by it."
 
 Judge = Callable[[Study], Iterator[Finding]]
 """From a study to the findings of some rules."""
+
+
+class AskedAbout(Protocol):
+    """A claim under a problem and a reading, as a `PrintedRow` is."""
+
+    @property
+    def claim(self) -> Claim: ...  # noqa: D102
+
+    @property
+    def problem(self) -> str: ...  # noqa: D102
+
+    @property
+    def reading(self) -> str: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -51,13 +63,13 @@ class Explained:
     decides: bool = True
 
     def finding(
-        self, about: PrintedRow[Any] | Claim | None, kind: str, *sentences: str, **facts: Any
+        self, about: AskedAbout | Claim | None, kind: str, *sentences: str, **facts: Any
     ) -> Finding:
         """A finding on a row, a claim or none; a sentence may be empty."""
         given: dict[str, Any] = {"rule": self.id, "basis": self.basis, "decides": self.decides}
-        if isinstance(about, PrintedRow):
+        claim = about if about is None or isinstance(about, Claim) else about.claim
+        if about is not None and not isinstance(about, Claim):
             given |= {"problem": about.problem, "reading": about.reading}
-        claim = about.claim if isinstance(about, PrintedRow) else about
         given["claim"] = None if claim is None else claim.id
         return Finding(kind=kind, sentences=sentences, **given | facts)
 
