@@ -50,8 +50,7 @@ class Evolution:
 
         Basins that are narrower than the members of a population lie apart are found there.
         """
-        points = {2: 400, 3: 50}.get(segments, 0)
-        return np.linspace(-self.ratios, self.ratios, points)
+        return np.linspace(-self.ratios, self.ratios, {2: 400, 3: 50}.get(segments, 0))
 
 
 EVOLUTION = Evolution()

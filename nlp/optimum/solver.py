@@ -22,7 +22,7 @@ from .closed_forms import (
     tight_at_ratios,
     unsearched,
 )
-from .decided import AIM, Local, decided, incumbent, widened
+from .decided import AIM, Local, decided, incumbent, kept, widened
 from .feasibility import apart, forbidden_jumps
 from .judgement import BETTER, SAME_TOTAL, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, smoother
@@ -158,7 +158,8 @@ def _solve(problem: Problem, ask: _Ask) -> Solution:
     if curve is not problem.curve:
         answer = _solve(replace(problem, curve=curve), ask)
         verdict = check(problem, answer.durations) if answer.found else None
-        return replace(answer, problem=problem, check=verdict)
+        if verdict is None or kept(problem, verdict):
+            return replace(answer, problem=problem, check=verdict)
     many = problem.curve.free or problem.segments > DENSE
     if problem.limits.braking.any() and (many or (forbidden_jumps(problem) and not apart(problem))):
         return _in_narrow_limits(problem, ask)
