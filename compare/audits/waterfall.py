@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
+from ...nlp.proofs import bound_any_curve
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
 from ...problem import down, fit, shown_bound, up
@@ -284,20 +286,24 @@ def _retimed(name: str, solution: Solution) -> Step:
 def _free(study: Study, pair: Pair) -> Step:
     name = "any curve through the way-points"
     answer = estimate_any_curve(study.problem(pair))
-    if answer.total_time is None:
-        return Step.missing(name, answer.why or "")
-    also = f"; {answer.why}" if answer.why else ""
-    note = f"upper estimate{also}"
     exact = printed_problem_or_none(study.case.statement(*pair))
     bound = None if exact is None else study.intervals.any_curve(exact)
+    lower, how, optimum = Fraction(0), "certified", study.optimum(pair)
+    if bound is not None:
+        lower = bound.lower
+    elif exact is not None and optimum.found:
+        lower, how = bound_any_curve(optimum, exact), "proved"
+    least = shown_bound(lower, "lower")
+    shown = f"; no motion within the limits is shorter than {least} s: {how}" if lower > 0 else ""
+    if answer.total_time is None:
+        return Step.missing(name, f"{answer.why or 'no estimate'}{shown}")
+    also = f"; {answer.why}" if answer.why else ""
+    note, low, high = f"upper estimate{also}", down(lower), answer.total_time
     # An infimum that is met to the last digit may round to either side of its bound.
-    if bound is None or not 0 < bound.lower <= answer.total_time * (1 + FEW_ROUNDINGS):
-        return Step(name=name, time=answer.total_time, evidence=answer.evidence, note=note)
-    low = down(bound.lower)
-    least = shown_bound(bound.lower, "lower")
-    shown = f"no motion within the limits is shorter than {least} s: certified"
-    known, high, note = Evidence.BEST_KNOWN, max(low, answer.total_time), f"{note}; {shown}"
-    if bound.upper is not None:
+    if not 0 < lower <= high * (1 + FEW_ROUNDINGS):
+        return Step(name=name, time=high, evidence=answer.evidence, note=note)
+    known, high, note = Evidence.BEST_KNOWN, max(low, high), f"{note}{shown}"
+    if bound is not None and bound.upper is not None:
         known, high = Evidence.CERTIFIED, up(bound.upper)
-        note = f"{shown}, gap {(high - low) / high:.1e}{also}"
+        note = f"{shown[2:]}, gap {(high - low) / high:.1e}{also}"
     return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)

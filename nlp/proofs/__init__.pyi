@@ -33,7 +33,7 @@ from .kept_files import (
 )
 from .kept_nearby import KeptNearby as KeptNearby
 from .outcome import Certified as Certified, Outcome as Outcome, Progress as Progress
-from .proven_optimum import solve as solve
+from .proven_optimum import bound_any_curve as bound_any_curve, solve as solve
 from .state import (
     StateFile as StateFile,
     read_state as read_state,

@@ -123,17 +123,28 @@ def _searched(
             interval = interval_in(answer.verdict, answer.durations)
     if interval is not None and close(float(interval.lower), found.total_time):
         return interval
+    lower = bound_any_curve(found, exact)
+    if interval is not None:
+        return replace(interval, lower=max(lower, interval.lower))
+    return ProvedInterval(lower, None, None, False) if lower > 0 else None
+
+
+def bound_any_curve(found: Solution, exact: ExactProblem) -> Fraction:
+    """No motion of an answer's problem is shorter on any curve, s; 0 if nothing is proved.
+
+    Parameters
+    ----------
+    exact : ExactProblem
+        The problem in rational numbers.
+    """
     from .any_curve import bound_at_once  # half a second to import; most answers need none
 
     with suppress(Refused):
         breaks = list(found.problem.curve.waypoint_breaks)
         times = np.concatenate([[0.0], found.durations.cumsum()])[breaks]
         speeds = found.trajectory(times, 1) / _factors(exact.unit, len(exact.joints))
-        lower = min(bound_at_once(exact, np.diff(times), speeds), Fraction(found.best))
-        if interval is not None:
-            return replace(interval, lower=max(lower, interval.lower))
-        return ProvedInterval(lower, None, None, False) if lower > 0 else None
-    return interval
+        return min(bound_at_once(exact, np.diff(times), speeds), Fraction(found.best))
+    return Fraction(0)
 
 
 def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
