@@ -97,7 +97,8 @@ def verdict_card(
         if count_words(improvement) > left:
             improvement, unclaimed = None, "there is no room for it"
         left -= count_words(improvement or "")
-    explanation = _explanation(causes, left)
+    # What a line has said of a cause has no room for what may explain it.
+    explanation = _explanation([c for c in causes if (c.rule, c.claim) not in said], left)
     left -= count_words(explanation or "")
     said_of_runs = (str(runs[0]), runs[0].briefly) if runs else ()
     near = next((one for one in said_of_runs if one and count_words(one) <= left), None)

@@ -63,7 +63,10 @@ def kept_limits(study: Study, words: Mapping[str, Judgement]) -> Kept:
         return Kept(without, undecided)
     apart = {c.id for c in elsewhere}
     if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
-        if all(isinstance(c, ProfiledClaim) and c.profile is not None for c in elsewhere):
+        profiled = [
+            c for c in case.claims if isinstance(c, ProfiledClaim) and c.profile is not None
+        ]
+        if {c.other_curve for c in elsewhere} <= {c.other_curve for c in profiled}:
             return Kept(Why("the printed durations are compared with profiles"), undecided)
         curves = " and ".join(dict.fromkeys(str(c.other_curve) for c in elsewhere))
         return Kept(
