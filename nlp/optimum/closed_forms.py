@@ -101,7 +101,11 @@ def joined(problem: Problem) -> Array | str | None:
     wide = _ratios(problem, BEYOND)
     if np.isneginf(wide.low).all() and np.isposinf(wide.high).all():
         return None
-    low, high = _box(problem)
+    # Bounds on log durations, segment by segment.
+    trajectory = problem.curve.fitted(problem.waypoints, np.ones(problem.segments))
+    least = np.maximum(problem.duration_lower, worst_ratios(problem, trajectory))
+    with np.errstate(divide="ignore"):
+        low, high = np.log(least), np.log(problem.duration_upper)
     for k, reason in enumerate(wide.reasons):
         if not wide.low[k] <= wide.high[k] or np.isposinf(wide.low[k]):
             return f"the {reason} jumps at way-point {k + 2} for any durations"
@@ -109,10 +113,12 @@ def joined(problem: Problem) -> Array | str | None:
     late = np.flatnonzero(_least(low, wide) > high + slack)
     if late.size:
         k = int(late[0])
-        least = shown_bound(np.exp(_least(low, wide)[k]), "lower")
+        shown = shown_bound(np.exp(_least(low, wide)[k]), "lower")
+        bounded = np.flatnonzero(np.isfinite(wide.low) | np.isfinite(wide.high))
+        smooth = wide.reasons[int(bounded[np.argmin(np.abs(bounded - k))])]
         return (
-            f"without a jump of {_first(wide, k)} segment {k + 1} takes at least "
-            f"{least} s within the limits and the duration bounds; "
+            f"without a jump of {smooth} segment {k + 1} takes at least "
+            f"{shown} s within the limits and the duration bounds; "
             f"its upper bound is {problem.duration_upper[k]:.6g} s"
         )
     close = _ratios(problem, WITHIN)
@@ -122,12 +128,6 @@ def joined(problem: Problem) -> Array | str | None:
     if not (np.isfinite(z).all() and (close.low <= close.high).all() and (z <= high).all()):
         return None
     return np.asarray(np.maximum(np.exp(z), problem.duration_lower))
-
-
-def _first(ratios: _Ratios, k: int) -> str:
-    """What is smooth at a bounded break next to a segment, or at the nearest one."""
-    bounded = np.flatnonzero(np.isfinite(ratios.low) | np.isfinite(ratios.high))
-    return ratios.reasons[int(bounded[np.argmin(np.abs(bounded - k))])]
 
 
 def _ratios(problem: Problem, share: float) -> _Ratios:
@@ -176,14 +176,6 @@ def _ratio(left: float, right: float, room: float, other: float) -> tuple[float,
         elif side < 0.0:
             least = np.inf
     return (least, most) if most > 0.0 else (np.inf, 0.0)
-
-
-def _box(problem: Problem) -> tuple[Array, Array]:
-    """Bounds on log durations by limits and duration bounds, segment by segment."""
-    trajectory = problem.curve.fitted(problem.waypoints, np.ones(problem.segments))
-    least = np.maximum(problem.duration_lower, worst_ratios(problem, trajectory))
-    with np.errstate(divide="ignore"):
-        return np.log(least), np.log(problem.duration_upper)
 
 
 def _least(low: Array, ratios: _Ratios) -> Array:

@@ -157,9 +157,8 @@ def stretched(problem: Problem, h: Array, nodal: Array | None) -> Local | None:
                 most = peak.ratio + peak.error / peak.limit
                 factor = max(factor, (most / (1.0 + AIM)) ** (1.0 / (r + 1)))
         longer = h * factor
-        if not (factor > 1.0 and np.isfinite(longer).all()):
-            return None
-        if (longer > problem.duration_upper).any():
+        room = np.isfinite(longer) & (longer <= problem.duration_upper)
+        if not (factor > 1.0 and room.all()):
             return None
         nodal = None if nodal is None else slowed(problem, nodal, factor)
         h = longer

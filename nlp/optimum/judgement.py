@@ -45,11 +45,7 @@ and floors lie orders of magnitude below durations that any limit asks for."""
 
 
 def judged(
-    problem: Problem,
-    found: list[Local],
-    floor: Array,
-    starts: int,
-    route: Route = Route.DESCENT,
+    problem: Problem, found: list[Local], floor: Array, starts: int, route: Route = Route.DESCENT
 ) -> Solution:
     """The best of the ends of all starts that the checker passes, with its optimality conditions.
 
@@ -127,11 +123,8 @@ def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
 
 def still_falling(durations: Array, floor: Array) -> str | None:
     """Why an answer is not the shortest motion, if a duration lies on a least one of the search."""
-    at = np.flatnonzero(on_floor(durations, floor)).tolist()
-    if not at:
-        return None
-    names = ", ".join(str(k + 1) for k in at)
-    return f"the total falls as the duration of segment {names} goes to 0"
+    names = ", ".join(str(k + 1) for k in np.flatnonzero(on_floor(durations, floor)).tolist())
+    return f"the total falls as the duration of segment {names} goes to 0" if names else None
 
 
 def _past_rounding(problem: Problem, local: Local) -> Local:
@@ -149,15 +142,12 @@ def _past_rounding(problem: Problem, local: Local) -> Local:
 def _nothing_found(found: list[Local]) -> tuple[Status, str]:
     judgements = [local.verdict for local in found]
     least = min(judgements, key=lambda one: one.max_violation, default=None)
-    if any(one.limits is Verdict.PASS for one in judgements):
-        return (
-            Status.NONE_FOUND,
-            "the limits can be kept inside the segments, but between them the motion jumps; "
-            f"no durations without a jump found from {len(found)} starts",
-        )
     worst = float("inf") if least is None else least.max_violation
-    return (
-        Status.NONE_FOUND,
+    why = (
         f"no feasible durations found from {len(found)} starts; the least excess over a limit was "
-        f"{worst:.3g} (relative). This is local evidence, not a proof",
+        f"{worst:.3g} (relative). This is local evidence, not a proof"
     )
+    if any(one.limits is Verdict.PASS for one in judgements):
+        why = "the limits can be kept inside the segments, but between them the motion jumps; "
+        why += f"no durations without a jump found from {len(found)} starts"
+    return Status.NONE_FOUND, why

@@ -129,10 +129,7 @@ class _Weighed:
 
 
 def kkt(
-    problem: Problem,
-    durations: Array,
-    nodal: Array | None = None,
-    active: float = ACTIVE,
+    problem: Problem, durations: Array, nodal: Array | None = None, active: float = ACTIVE
 ) -> KKT:
     """Optimality conditions over durations (and free nodal derivatives).
 

@@ -56,9 +56,9 @@ class Program:
         self.sides = Sides(problem, unit, self.angle)
         self.pieces = pieces_of(problem)
         self.degrees = self.pieces.degrees
-        held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, 1 + self.degrees.max())}
-        self._held = held
-        self._row = {r: _inverted(k, self.degrees.size) for r, k in held.items()}
+        orders = range(1, 1 + self.degrees.max())
+        self._held = {r: np.flatnonzero(self.degrees >= r) for r in orders}
+        self._row = {r: np.cumsum(self.degrees >= r) - 1 for r in orders}  # of each piece held
         self.durations = ca.MX.sym("h", self.segments)
         self._widths = self._widths_of_pieces()
         self._clock: Clock | None = None
@@ -411,10 +411,3 @@ def _stated_values(curve: Interpolant, joints: int) -> Array:
     for i in np.flatnonzero(told).tolist():
         values[i] = given[table.breaks[i]][int(table.orders[i])]
     return values
-
-
-def _inverted(held: Indices, size: int) -> Indices:
-    """Row of each piece among those held; −1 elsewhere."""
-    out = np.full(size, -1, dtype=np.int64)
-    out[held] = np.arange(held.size)
-    return out

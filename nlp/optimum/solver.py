@@ -15,13 +15,7 @@ from numpy.typing import ArrayLike
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, as_piecewise, check
 from ..clock import stopping_after, time_up
 from .basins import basins, exact_search, shortened
-from .closed_forms import (
-    FORMULA,
-    cut_short,
-    refused_at_ratios,
-    tight_at_ratios,
-    unsearched,
-)
+from .closed_forms import FORMULA, cut_short, refused_at_ratios, tight_at_ratios, unsearched
 from .decided import AIM, Local, decided, incumbent, kept, widened
 from .feasibility import apart, forbidden_jumps
 from .judgement import BETTER, SAME_TOTAL, better_of, judged, on_floor
@@ -223,9 +217,14 @@ def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
     if short and _moves_throughout(problem) and not time_up():
         end = Local.of(problem, solution.durations)
         solution = better_of(solution, _continued(problem, end, Route.NLP))
-    if not solution.found:
-        solution = _stretched_start(problem, solution)
-    return solution
+    if solution.found:
+        return solution
+    # Where no search found anything: equal durations, stretched until they pass.
+    end = decided(problem, equal_start(problem), first_nodal(problem))
+    if end is None:
+        return solution
+    answer = judged(problem, [end], made_up(problem, FLOORS[1]), solution.starts)
+    return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
 def _continued(problem: Problem, motion: Local, route: Route) -> Solution:
@@ -313,9 +312,7 @@ def _above_floors(
             ratio, total = share / wide, lower.total_time
             slope = max(0.0, answer.total_time - total) / (1.0 - ratio)
             lower = replace(lower, infimum=max(0.0, total - slope * ratio))
-            near = (
-                total - lower.best <= SAME_TOTAL * total
-            )  # further, the estimate may be off by more
+            near = total - lower.best <= SAME_TOTAL * total  # else the estimate may be off by more
             if near and not _rises_below(problem, lower.durations, floor):
                 return lower
         answer = lower
@@ -373,15 +370,6 @@ def _without_jumps(problem: Problem, solution: Solution) -> Solution:
         return solution
     why = f"{ratios} ratios of durations would have to satisfy {equations} equations"
     return replace(solution, why=f"{solution.why}; {why}")
-
-
-def _stretched_start(problem: Problem, solution: Solution) -> Solution:
-    """Equal durations, stretched until they pass, where no search found anything."""
-    found = decided(problem, equal_start(problem), first_nodal(problem))
-    if found is None:
-        return solution
-    answer = judged(problem, [found], made_up(problem, FLOORS[1]), solution.starts)
-    return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
 def _shortened(problem: Problem, solution: Solution) -> Solution:

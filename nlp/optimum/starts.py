@@ -106,8 +106,7 @@ def way_start(problem: Problem) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         fast = np.where(way > 0, WAY.dwell * way / velocity, 0.0).max(axis=1)
         turn = np.sqrt(np.where(way > 0, WAY.turn * way / acceleration, 0.0)).max(axis=1)
-    breaks = np.array(problem.curve.waypoint_breaks)
-    parts = np.diff(breaks)
+    parts = np.diff(problem.curve.waypoint_breaks)
     h = np.repeat(np.maximum(fast, turn) / parts, parts)
     if not (np.isfinite(h).all() and h.mean() > 0):
         return equal_start(problem)

@@ -19,23 +19,10 @@ from .clamped_declaration import (
     fractions_of,
     nearest_reading,
 )
-from .clamped_fit import (
-    clamped_by_durations,
-    clamped_enclosed,
-    clamped_reach,
-    clamped_shape,
-)
+from .clamped_fit import clamped_by_durations, clamped_enclosed, clamped_reach, clamped_shape
 from .condition import counts_in_words
 from .families import piecewise, quintic_spline
-from .kind import (
-    Asked,
-    Curve,
-    Derivatives,
-    Enclosed,
-    Shape,
-    Timing,
-    as_batch,
-)
+from .kind import Asked, Curve, Derivatives, Enclosed, Shape, Timing, as_batch
 from .peak import Extremum
 from .stretched import StretchedCurve
 

@@ -15,15 +15,7 @@ from ..arrays import Array
 from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
 from .condition import ConditionKind, Conditions, Layout, conditions_of, counts_in_words
-from .kind import (
-    Asked,
-    Curve,
-    Derivatives,
-    Enclosed,
-    as_batch,
-    merged_values,
-    value_errors,
-)
+from .kind import Asked, Curve, Derivatives, Enclosed, as_batch, merged_values, value_errors
 from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS, PERM
 from .refined import refined_coefficients
