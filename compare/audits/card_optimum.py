@@ -36,7 +36,9 @@ from .words import FEW, NO_WAYPOINTS, percent, seconds
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
 UNLIMITED = "no limits are stated"
+"""Why a problem has no optimum, where nothing is limited."""
 DOUBTED = "printed way-points that other printed numbers contradict"
+"""What a total rests on, where way-points are in doubt."""
 _LONG = 9
 """Words of a label or an objective from which a sentence leaves it out."""
 _PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}

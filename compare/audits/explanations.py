@@ -22,7 +22,7 @@ from ...problem.cases import (
 )
 from ..documents import Explanation, Finding, HeldOtherwise, Rounding, Severity, quoted
 from .printed_row import PrintedRow
-from .rules import RuleGroup, beside, count_conditions, held_otherwise
+from .rules import RuleGroup, count_conditions, held_otherwise, peak_beside
 from .slips import Slip, changes_of_motion, durations, misprints, of_rows, totals, values
 from .stated import RowClaim, place
 from .study import Pair, Study
@@ -212,7 +212,7 @@ def _of_another_motion(study: Study, claim: PeakClaim, finding: Finding) -> Iter
         if not isinstance(motion, RowClaim) or motion in own or not study.fits(motion, pair):
             continue
         row = PrintedRow(study, motion, pair)
-        each = [beside(row, claim, number, joint) for joint, number in numbers]
+        each = [peak_beside(row, claim, number, joint) for joint, number in numbers]
         count = sum(one is not None and one.printed_there for one in each)
         if count > 1 and 2 * count > len(each):
             yield Explanation(

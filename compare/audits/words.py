@@ -14,6 +14,7 @@ AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 CLAIM, READINGS = "claim", "readings"
 """Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""
 NO_WAYPOINTS = "the text that was read contains no way-points"
+"""Why a case has no problems."""
 FEW = 2
 """Readings, places or totals that a sentence names; more are counted."""
 

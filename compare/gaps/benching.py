@@ -405,11 +405,8 @@ def _standing(name: str, own: Sequence[Standing], first: int) -> OverallStanding
     targets = []
     for same in zip(*(one.targets for one in own), strict=True):
         rates = np.array([target.rate for target in same])
-        targets.append(
-            OverallTarget(
-                gap=same[0].gap, rate=float(rates.mean()), solved=int((rates >= 0.5).sum())
-            )
-        )
+        rate, solved = float(rates.mean()), int((rates >= 0.5).sum())
+        targets.append(OverallTarget(gap=same[0].gap, rate=rate, solved=solved))
     return OverallStanding(
         optimizer=name,
         problems=len(own),

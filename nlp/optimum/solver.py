@@ -109,8 +109,8 @@ def solve(
     """
     if starts < 1:
         raise TrajgapError(f"starts: must be 1 or more, got {starts}")
-    if not seconds > 0.0:
-        raise TrajgapError(f"seconds: must be positive, got {seconds}")
+    if not seconds >= 0.0:
+        raise TrajgapError(f"seconds: must not be below 0, got {seconds}")
     points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
     nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
     wanted = (len(points), problem.curve.free, len(problem.joints))
@@ -220,10 +220,10 @@ def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
     if solution.found:
         return solution
     # Where no search found anything: equal durations, stretched until they pass.
-    end = decided(problem, equal_start(problem), first_nodal(problem))
-    if end is None:
+    stretched = decided(problem, equal_start(problem), first_nodal(problem))
+    if stretched is None:
         return solution
-    answer = judged(problem, [end], made_up(problem, FLOORS[1]), solution.starts)
+    answer = judged(problem, [stretched], made_up(problem, FLOORS[1]), solution.starts)
     return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 

@@ -7,7 +7,11 @@ from .following_numbers import (
 )
 from .linear_blends import blended as blended, judge_row as judge_row
 from .on_instances import HANDLED as HANDLED, attributed as attributed, placed as placed
-from .peaks import beside as beside, box_reach as box_reach, largest as largest
+from .peaks import (
+    box_reach as box_reach,
+    largest as largest,
+    peak_beside as peak_beside,
+)
 from .registry import (
     EXPLAINED as EXPLAINED,
     GROUPS as GROUPS,

@@ -26,7 +26,7 @@ from ..printed_row import PrintedRow, printed_rows
 from ..stated import RowClaim, allowed_bases, printed_total
 from ..study import Study
 from .motion_numbers import measure_beside, value_beside
-from .peaks import beside
+from .peaks import peak_beside
 from .printed_tables import printed_alike
 from .stated_curve import has_vertices
 
@@ -135,7 +135,7 @@ def _number(
 ) -> str | None:
     """One number of a motion; None if it has none."""
     if isinstance(claim, PeakClaim):
-        one = beside(row, claim, printed, joint)
+        one = peak_beside(row, claim, printed, joint)
     elif isinstance(claim, ValueClaim):
         one = value_beside(row, claim, printed, joint or row.posed().joints[0])
     else:

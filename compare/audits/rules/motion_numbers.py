@@ -26,7 +26,7 @@ from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
 from ..words import seconds
 from .beside import SAMPLES, Beside, nearest_number
-from .peaks import beside, peak_described
+from .peaks import peak_beside, peak_described
 from .rule_group import Explained, rule_group
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
@@ -411,6 +411,6 @@ TG211 = Explained(
 def judge_numbers(study: Study) -> Iterator[Finding]:
     """Findings of TG203, TG208 and TG211."""
     without = "No durations are printed from which this peak could be computed."
-    yield from _judged(study, TG203, PeakClaim, beside, peak_described, without)
+    yield from _judged(study, TG203, PeakClaim, peak_beside, peak_described, without)
     yield from _judged(study, TG208, MeasureClaim, measure_beside, measure_described)
     yield from _judged(study, TG211, ValueClaim, value_beside, value_described)

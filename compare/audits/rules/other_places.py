@@ -14,7 +14,7 @@ from ..stated import RowClaim, called
 from ..study import Study
 from ..words import percent
 from .judged_rows import broken
-from .peaks import beside
+from .peaks import peak_beside
 from .printed_tables import doubted
 from .rule_group import INFORMS, Explained, rule_group
 
@@ -48,7 +48,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
         joints = study.problem(row.pair).joints
         said = []
         for joint, number in study.printed_numbers(claim):
-            mine = beside(row, claim, number, joint)
+            mine = peak_beside(row, claim, number, joint)
             if mine is None or mine.fits:
                 continue
             found = []
@@ -59,7 +59,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                 for other in joints if joint is not None else (None,):
                     if (motion.id, other) == (own.id, joint):
                         continue
-                    there = beside(elsewhere, claim, number, other)
+                    there = peak_beside(elsewhere, claim, number, other)
                     if there is not None and there.printed_there:
                         found.append((abs(there.distance), motion, other))
             if found:

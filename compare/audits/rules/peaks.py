@@ -92,7 +92,7 @@ def largest(row: PrintedRow[Claim], order: int) -> list[Extremum]:
     return row.once("largest", compute, order)
 
 
-def beside(
+def peak_beside(
     row: PrintedRow[AnyClaim], claim: PeakClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.

@@ -95,9 +95,9 @@ def printed_as(value: float, places: int = 1) -> Change:
     [
         # 0.2332 for 233.2 mm/s is metres; 57.3 and 2π times too much are nothing at all.
         ((), "near 0.001, as a thousandth of the unit."),
-        ((printed_as(233.246 * 180 / np.pi),), "neither rounding, cut-off digits"),
-        ((printed_as(233.246 * 2 * np.pi),), "neither rounding, cut-off digits"),
-        ((printed_as(233.246 * 30 / np.pi),), "neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 180 / np.pi),), "Neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 2 * np.pi),), "Neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 30 / np.pi),), "Neither rounding, cut-off digits"),
         ((printed_as(23.32, 2),), "as between millimetres and centimetres"),
         (
             (('joint = "d3"\nvalue', 'joint = "2"\nvalue'), printed_as(np.radians(105.456), 4)),

@@ -171,7 +171,7 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert "refuted" in out
     assert "error TG201 [1 of 2 readings] Table 2: A limit is broken" in out
     # The card comes first, then the claims by their texts.
-    assert out.index("Under the default") < out.index("The motion is optimal. (abstract)")
+    assert out.index("Not optimal as printed.") < out.index("The motion is optimal. (abstract)")
     assert out.endswith(f"pages: {Path('trajgap-audit') / 'index.html'}\n")
     assert [p.name for p in Path("trajgap-audit").iterdir()] == ["index.html"]
 

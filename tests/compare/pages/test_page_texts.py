@@ -124,7 +124,7 @@ def test_long_tables_of_readings_scroll_in_a_box_and_print_whole() -> None:
 
 MOST_BYTES = 600_000
 """Of one page, its pictures apart."""
-MOST_WORDS = 1_050
+MOST_WORDS = 1_100
 """Of one page before anything is unfolded."""
 
 

@@ -114,8 +114,8 @@ def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
 def test_starts_of_the_wrong_length_or_number_are_refused() -> None:
     with pytest.raises(TrajgapError, match="starts: must be 1 or more, got 0"):
         solve(puma(), starts=0)
-    for seconds in (0.0, -1.0, np.nan):
-        with pytest.raises(TrajgapError, match=f"seconds: must be positive, got {seconds}"):
+    for seconds in (-1.0, np.nan):
+        with pytest.raises(TrajgapError, match=f"seconds: must not be below 0, got {seconds}"):
             solve(puma(), seconds=seconds)
     with pytest.raises(TrajgapError, match=r"initial: expected shape \(starts, 3\)"):
         solve(puma(), initial=[[1.0, 1.0]])
