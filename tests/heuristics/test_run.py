@@ -42,16 +42,7 @@ from trajgap.heuristics import (
 )
 from trajgap.heuristics.repair import judge_of
 from trajgap.heuristics.side_by_side import TOGETHER, moves_together
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    quintic_spline,
-    rest_to_rest,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curves
 
 BOUNDS = {"duration_lower": 0.3, "duration_upper": 3.0}
 PROBLEM = two_joints(**BOUNDS, joints=("waist", "elbow"), name="two joints")
@@ -59,11 +50,11 @@ STUCK = two_joints(Limits([6.0, 0.0], joints=2), duration_upper=3.0)
 JERKY = two_joints(
     Limits([4.0, 5.0], [8.0, 9.0], [60.0, 80.0]), duration_lower=0.1, duration_upper=9.0
 )
-SPLINE = Problem(WAYPOINTS[:, 0], Limits(2.5, 6.0), cubic_spline(3), 0.05, 2.5)
+SPLINE = Problem(WAYPOINTS[:, 0], Limits(2.5, 6.0), curves.cubic_spline(3), 0.05, 2.5)
 LONG = Problem(
     np.random.default_rng(31).uniform(-2, 2, (10, 3)),
     Limits([2.0, 3.0, 2.5], [6.0, 5.0, 9.0]),
-    quintic_spline(9),
+    curves.quintic_spline(9),
     0.0,
     6.0,
     name="nine segments",
@@ -228,8 +219,8 @@ def test_what_must_be_whole(
             call(value)
 
 
-SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), quintic_spline(3), 0.1, 4.0)
-STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), rest_to_rest(3, 5), 0.1, 4.0)
+SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), curves.quintic_spline(3), 0.1, 4.0)
+STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), curves.rest_to_rest(3, 5), 0.1, 4.0)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -33,18 +33,7 @@ from trajgap.compare.documents.export import SCHEMA_FILE, named, schema_text
 from trajgap.compare.documents.vocabulary import VOCABULARY
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.retiming.toppra_check import Retiming, retime
-from trajgap.problem import (
-    Coupling,
-    Limits,
-    Problem,
-    check,
-    cubic_spline,
-    fit,
-    load_case,
-    published_ids,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Coupling, Limits, Problem, check, curves, fit, load_case, published_ids
 from trajgap.problem.cases.claim import QUANTITY_KINDS
 
 DOCS = ROOT / "docs"
@@ -53,7 +42,7 @@ WAYPOINTS = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 1.7], [2.0, 1.2]])
 
 def problem_with(limits: Limits | None = None, **changes: Any) -> Problem:
     limits = limits or Limits(velocity=[2.0, 3.0], acceleration=[5.0, 4.0])
-    return Problem(WAYPOINTS, limits, three_five_three(), **changes)
+    return Problem(WAYPOINTS, limits, curves.three_five_three(), **changes)
 
 
 def test_a_bound_that_is_a_float_is_not_moved() -> None:
@@ -178,7 +167,7 @@ def test_a_per_joint_solution() -> None:
 
 NOTHING_MOVES = Limits(velocity=[1.0, 0.0])
 STILL = Problem(
-    np.array([[0.5], [0.5], [1.5]]), Limits(velocity=[2.0]), rest_to_rest(2, 5), name="x"
+    np.array([[0.5], [0.5], [1.5]]), Limits(velocity=[2.0]), curves.rest_to_rest(2, 5), name="x"
 )
 
 
@@ -256,7 +245,7 @@ def test_a_check_that_breaks() -> None:
 
 
 LONG = {"duration_upper": [1.0, 50.0, 50.0]}
-UNBOUNDED = Problem(WAYPOINTS, Limits(velocity=[0.0, 1.0]), cubic_spline(3))
+UNBOUNDED = Problem(WAYPOINTS, Limits(velocity=[0.0, 1.0]), curves.cubic_spline(3))
 
 
 @pytest.mark.parametrize(

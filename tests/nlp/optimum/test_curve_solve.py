@@ -8,15 +8,7 @@ import pytest
 from support.b_splines import clamped, uniform
 from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Limits,
-    Verdict,
-    check,
-    evaluate,
-    load_case,
-    quintic_spline,
-    solve_in_closed_form,
-)
+from trajgap.problem import Limits, Verdict, check, curves, evaluate, load_case
 
 POLISH = "irb1600-ga-cubic-bspline"
 BEST = {
@@ -37,7 +29,9 @@ UNITS = tuple(BEST)
 def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
     """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+    expected = curves.solve_in_closed_form(
+        problem.curve, problem.waypoints, problem.limits.derivatives
+    )
     total = expected.sum()
     assert total == pytest.approx(BEST[units][0], abs=1e-9)
     start = random_starts(problem, 1, np.random.default_rng(11))
@@ -93,7 +87,9 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     assert solution.check.limits is Verdict.PASS
     assert solution.kkt_residual <= 1e-8
     if kind[3] == "stretched":
-        wanted = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+        wanted = curves.solve_in_closed_form(
+            problem.curve, problem.waypoints, problem.limits.derivatives
+        )
         assert solution.total_time == pytest.approx(wanted.sum(), rel=1e-9)
         return
     # No nearby durations, stretched until they keep the limits, are shorter.
@@ -135,7 +131,7 @@ def test_each_joint_by_itself() -> None:
 def test_a_b_spline_with_knots_at_the_way_points_is_solved_as_a_polynomial_spline() -> None:
     problem, _ = clamped((5, "waypoints", "times", "timed"), count=5)
     solution = solve(problem)
-    spline = solve(replace(problem, curve=quintic_spline(4)))
+    spline = solve(replace(problem, curve=curves.quintic_spline(4)))
     assert solution.status is spline.status is Status.CONVERGED
     assert solution.problem is problem
     assert solution.check.peaks == check(problem, solution.durations).peaks
