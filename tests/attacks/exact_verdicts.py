@@ -146,11 +146,8 @@ def verdicts(rng: Rng, folder: Path) -> str | None:
         stated = {"time_noise": written.time_noise}
         if written.noise is not None:
             stated["noise"] = (written.noise,)
-        ordered = all(
-            a.time < b.time
-            for table in (written.drawn, written.shown)
-            for a, b in pairwise(table[0])
-        )
+        rows = pairwise(written.drawn[0]), pairwise(written.shown[0])
+        ordered = all(a.time < b.time for pairs in rows for a, b in pairs)
         if not ordered:
             return "samples at one time"
         if how == "none":

@@ -47,9 +47,8 @@ from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curve
 BOUNDS = {"duration_lower": 0.3, "duration_upper": 3.0}
 PROBLEM = two_joints(**BOUNDS, joints=("waist", "elbow"), name="two joints")
 STUCK = two_joints(Limits([6.0, 0.0], joints=2), duration_upper=3.0)
-JERKY = two_joints(
-    Limits([4.0, 5.0], [8.0, 9.0], [60.0, 80.0]), duration_lower=0.1, duration_upper=9.0
-)
+JERKY_LIMITS = Limits([4.0, 5.0], [8.0, 9.0], [60.0, 80.0])
+JERKY = two_joints(JERKY_LIMITS, duration_lower=0.1, duration_upper=9.0)
 SPLINE = Problem(WAYPOINTS[:, 0], Limits(2.5, 6.0), curves.cubic_spline(3), 0.05, 2.5)
 LONG = Problem(
     np.random.default_rng(31).uniform(-2, 2, (10, 3)),

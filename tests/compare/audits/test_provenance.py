@@ -65,9 +65,7 @@ def test_only_joints_that_move_one_by_one_have_certificates_of_their_own(monkeyp
 def test_the_command_makes_the_same_selection_again(tmp_path):
     study = Study(load_case(ID), seeds=4, problem="limit-80", reading="waypoints-rad")
     one = provenance(study, date(2026, 1, 31))
-    assert one.command == (
-        f"trajgap audit {ID} --seeds 4 --problem limit-80 --reading waypoints-rad"
-    )
+    assert one.command == f"trajgap audit {ID} --seeds 4 --problem limit-80 --reading waypoints-rad"
     beside = Study(load_case(ID), seeds=4, certificates_folder="proofs")
     assert provenance(beside).command == f"trajgap audit {ID} --seeds 4 --certificates proofs"
     file = tmp_path / "a case.toml"

@@ -184,19 +184,15 @@ def test_a_joint_that_must_not_move():
     still = np.column_stack([[0.1, 0.5, 0.3, 0.2], [0.7] * 4])
     limits = Limits([9.0, 0.0], np.inf)
     h = near(np.ones(3))
-    assert (
-        judge_rounding(Problem(still, limits, curves.three_five_three()), h).verdict
-        is Rounding.KEEPS
-    )
+    problem = Problem(still, limits, curves.three_five_three())
+    assert judge_rounding(problem, h).verdict is Rounding.KEEPS
     moving = still + np.array([[0.0, 0.0], [0.0, 1e-3], [0.0, 0.0], [0.0, 0.0]])
     problem = Problem(moving, limits, curves.three_five_three())
     assert judge_rounding(problem, h).lower_bound_of_worst == np.inf
     assert broken(problem, h).joint == "2"
     # With way-points that may all be equal there is no proof.
     assert judge_rounding(problem, h, near(moving, 1e-3)).verdict is Rounding.UNDECIDED
-    alone = Problem(
-        np.c_[[0.1, 0.4, 0.2, 0.6]], Limits(0.0, np.inf, joints=1), curves.three_five_three()
-    )
+    alone = Problem([0.1, 0.4, 0.2, 0.6], Limits(0.0, np.inf, joints=1), curves.three_five_three())
     assert judge_rounding(alone, near(np.ones(3), 0.01), None).verdict is Rounding.BREAKS
 
 
@@ -215,9 +211,7 @@ def test_nothing_limited_is_kept_by_every_duration():
     verdict = judge_rounding(problem, RoundingBox.exact(np.ones(3)))
     assert (verdict.verdict, verdict.worst_at_print) == (Rounding.KEEPS, 0.0)
     assert verdict.lower_bound_of_worst is None
-    free = Problem(
-        [[0.0], [1.0], [0.5]], Limits(np.inf), curves.cubic_spline(2), duration_lower=0.5
-    )
+    free = Problem([0.0, 1.0, 0.5], Limits(np.inf), curves.cubic_spline(2), duration_lower=0.5)
     h = np.array([0.49, 0.6])
     below = RoundingBox(h, np.array([0.48, 0.59]), np.array([0.495, 0.61]))
     assert judge_rounding(free, below).verdict is Rounding.BREAKS

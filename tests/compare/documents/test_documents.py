@@ -158,9 +158,7 @@ def test_a_per_joint_solution() -> None:
 
 
 NOTHING_MOVES = Limits(velocity=[1.0, 0.0])
-STILL = Problem(
-    np.array([[0.5], [0.5], [1.5]]), Limits(velocity=[2.0]), curves.rest_to_rest(2, 5), name="x"
-)
+STILL = Problem([0.5, 0.5, 1.5], Limits(velocity=2.0), curves.rest_to_rest(2, 5), name="x")
 
 
 def answered(residual: float) -> Solution:

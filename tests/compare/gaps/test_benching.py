@@ -48,9 +48,8 @@ TOY = Problem(WAYPOINTS, LIMITS, rest_to_rest(3, 5), 0.1, 3.0, name="toy")
 _WAYS = np.abs(np.diff(WAYPOINTS, axis=0))
 # A quintic from rest to rest peaks at 15/8 Δ/T and 10/√3 Δ/T²: Biagiotti and Melchiorri,
 # "Trajectory planning for automatic machines and robots", 2008, section 2.1.7.
-EXACT = np.maximum(15 / 8 * _WAYS / [1.7, 2.3], np.sqrt(10 / np.sqrt(3) * _WAYS / [2.9, 6.1])).max(
-    axis=1
-)
+_PEAKS = 15 / 8 * _WAYS / [1.7, 2.3], np.sqrt(10 / np.sqrt(3) * _WAYS / [2.9, 6.1])
+EXACT = np.maximum(*_PEAKS).max(axis=1)
 
 
 def row(trace: list[tuple[int, float]], evaluations: int, verdict: str | None = "pass") -> Row:

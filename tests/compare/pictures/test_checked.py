@@ -185,12 +185,9 @@ def test_a_deceleration_of_many_pieces() -> None:
     scaled = np.zeros((pieces, 3, 1))
     scaled[:, 1, 0], scaled[:, 2, 0] = h * speed[:-1], 0.5 * h * np.diff(speed)
     trajectory = Trajectory(np.full(pieces, h), scaled, (2,) * pieces)
-    assert beyond(trajectory, 0, 2, -1.0, 1.0, 0.0, 3.0) == [
-        pytest.approx((1.0, 2.0), abs=2.0 / POINTS)
-    ]
-    assert beyond(trajectory, 0, 2, -3.0, 3.0, 0.0, 1.0) == [
-        pytest.approx((0.0, 1.0), abs=2.0 / POINTS)
-    ]
+    near = 2.0 / POINTS
+    assert beyond(trajectory, 0, 2, -1.0, 1.0, 0.0, 3.0) == [pytest.approx((1.0, 2.0), abs=near)]
+    assert beyond(trajectory, 0, 2, -3.0, 3.0, 0.0, 1.0) == [pytest.approx((0.0, 1.0), abs=near)]
     assert beyond(trajectory, 0, 2, -3.0, 3.0, 0.0, 3.0) == []
 
 

@@ -94,9 +94,7 @@ def test_a_known_motion_far_above_a_proved_bound_ends_no_search() -> None:
 
 
 def test_free_derivatives_of_a_slower_motion_are_those_of_the_same_way() -> None:
-    problem = Problem(
-        [[0.0], [1.0], [-0.5], [0.3]], Limits(1.0, 2.0), curves.piecewise((5, 5, 5), 2)
-    )
+    problem = Problem([0.0, 1.0, -0.5, 0.3], Limits(1.0, 2.0), curves.piecewise((5, 5, 5), 2))
     rng = np.random.default_rng(2)
     h, nodal = rng.uniform(0.5, 2.0, 3), rng.normal(size=(problem.curve.free, 1))
     quick = fit(problem.curve, problem.waypoints, h, nodal)

@@ -123,9 +123,8 @@ def test_known_motions_and_starts_go_with_it() -> None:
     problem = free_speeds()
     best = solve(problem)
     slow = np.array(best.durations) * 1.5
-    known = solve(
-        problem, initial=slow, known=best.durations[None], known_nodal=best.nodal[None], starts=1
-    )
+    earlier = {"known": best.durations[None], "known_nodal": best.nodal[None]}
+    known = solve(problem, initial=slow, starts=1, **earlier)
     assert known.total_time <= best.total_time * (1 + 1e-9)
     assert solve(problem, initial=slow, known=slow).total_time < slow.sum()
 

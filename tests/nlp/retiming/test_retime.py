@@ -316,9 +316,7 @@ def test_summary_on_one_screen() -> None:
 def test_a_straight_line_without_a_velocity_limit_has_its_closed_form() -> None:
     # Constant speed 1.2 rad/s reaches no limit at all; between the same end speeds 2 rad/s² win:
     # 0.3 = 1.2 τ + τ² for each half.
-    straight = fit(
-        curves.cubic_spline(1, ends=((2, 0.0),)), np.array([[0.1], [0.7]]), np.array([0.5])
-    )
+    straight = fit(curves.cubic_spline(1, ends=((2, 0.0),)), np.array([[0.1], [0.7]]), [0.5])
     found = retime(straight, Limits(np.inf, 2.0))
     assert found.applicable
     assert found.extrapolated == pytest.approx(-1.2 + np.sqrt(1.44 + 1.2), rel=1e-5)

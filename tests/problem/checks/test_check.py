@@ -92,9 +92,8 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
     """Of unrelated polynomials, by scipy's values at the two ends of every break."""
     rng = np.random.default_rng(pieces)
     problem, _ = sample_problem(rest_to_rest(pieces, 3), pieces)
-    curve = Trajectory(
-        rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3)), (3,) * pieces
-    )
+    h, scaled = rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3))
+    curve = Trajectory(h, scaled, (3,) * pieces)
     held, at = curve.polynomial, curve.breaks[1:-1]
     steps = np.array([held(at, r) - held(np.nextafter(at, 0.0), r) for r in range(3)])
     for _ in range(9):

@@ -53,10 +53,8 @@ def exact_scaled(
         None if nodal is None else dict(zip(interpolant.free_derivatives, nodal[:, j], strict=True))
     )
     pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h, extra)
-    return [
-        [c * Fraction(float(h[k])) ** p for p, c in enumerate(piece)]
-        for k, piece in enumerate(pieces)
-    ]
+    steps = [Fraction(float(x)) for x in h]
+    return [[c * s**p for p, c in enumerate(one)] for s, one in zip(steps, pieces, strict=True)]
 
 
 @pytest.mark.parametrize("seed", range(4))

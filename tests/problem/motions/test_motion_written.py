@@ -184,13 +184,11 @@ def test_toppras_answers_are_read_as_they_are(how):
     import toppra
     from toppra import algorithm, constraint
 
-    limits = [
-        constraint.JointVelocityConstraint([2.0, 3.0]),
-        constraint.JointAccelerationConstraint([5.0, 9.0]),
-    ]
+    velocity = constraint.JointVelocityConstraint([2.0, 3.0])
+    acceleration = constraint.JointAccelerationConstraint([5.0, 9.0])
     toppra.setup_logging("ERROR")
     answer = algorithm.TOPPRA(
-        limits, path(), gridpoints=np.linspace(0, 1.3, 60), parametrizer=how
+        [velocity, acceleration], path(), gridpoints=np.linspace(0, 1.3, 60), parametrizer=how
     ).compute_trajectory(0.0, 0.0)
     motion = as_motion(answer)
     assert motion.total_time == pytest.approx(answer.duration)

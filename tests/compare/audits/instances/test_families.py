@@ -40,10 +40,7 @@ WHALE = "z1-woa-bspline"
 
 SMALL = (ROOT / "tests/support/family.toml").read_text("utf-8")
 
-UNSOLVED = (
-    ("upper = 8", "upper = 0.05"),
-    ("position_initial = [0, 8]", "position_initial = [0, 0.05]"),
-)
+UNSOLVED = (("upper = 8", "upper = 0.05"), ("initial = [0, 8]", "initial = [0, 0.05]"))
 """Changes after which nothing keeps its limits."""
 
 
@@ -171,10 +168,8 @@ def made(before: list[float], after: list[float], printed: tuple[float, float]) 
     sample = Sample(
         "as-printed", 0.3, 0, np.zeros((3, 2)), *known, totals, np.zeros(totals.shape, np.intp)
     )  # fmt: skip
-    sides = [
-        Procedure(problem="stops", algorithm="plain"),
-        Procedure(problem="spline", algorithm="new"),
-    ]
+    asked = (("stops", "plain"), ("spline", "new"))
+    sides = [Procedure(problem=problem, algorithm=name) for problem, name in asked]
     return InstancesResult(block, *sides, printed, ("as-printed",), 12, (sample,))
 
 

@@ -145,9 +145,8 @@ def test_a_sentence_on_several_rows_speaks_of_this_one_too(
     """The own row is slow enough; what is said of all rows hangs on the blended one."""
     checks = {"all": "within_limits", "rest": "at_rest", "smooth": "continuous"}
     said = (sentence(name, check, "own", "row") for name, check in checks.items())
-    found = verdicts(
-        audited_text(made_up(row("own", "9.00 9.00 9.00"), *said, limit=limit, **keys))
-    )
+    text = made_up(row("own", "9.00 9.00 9.00"), *said, limit=limit, **keys)
+    found = verdicts(audited_text(text))
     assert found["all"] == verdict
     assert found["rest"] == found["smooth"] == OPEN
 

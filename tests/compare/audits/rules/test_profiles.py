@@ -318,9 +318,8 @@ def test_a_peak_of_a_joint_that_the_profile_lacks_is_not_checkable() -> None:
 
 def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
     own = total("t", "1.0", profile="trapezoidal", problem="one", **CLAIM)
-    text = paper(
-        [[0, 1]], own, peak("p", "t", "velocity", "2.0"), curve=QUINTIC, velocity=2, acceleration=4
-    )
+    top = peak("p", "t", "velocity", "2.0")
+    text = paper([[0, 1]], own, top, curve=QUINTIC, velocity=2, acceleration=4)
     with pytest.raises(CaseError, match="'t' belongs to another problem"):
         parse_case(text, "made-up.toml")
 

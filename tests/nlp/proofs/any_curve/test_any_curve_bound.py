@@ -17,9 +17,7 @@ from trajgap.problem import Limits, Problem, TrajgapError, curves
 
 
 def with_ends(q: list[float], start: float, last: float, limits: Limits) -> Problem:
-    return Problem(
-        np.array(q)[:, None], limits, curves.cubic_spline(len(q) - 1, ((1, start),), ((1, last),))
-    )
+    return Problem(q, limits, curves.cubic_spline(len(q) - 1, ((1, start),), ((1, last),)))
 
 
 def between(step: float, first: float, last: float, a: float) -> float:
