@@ -230,14 +230,8 @@ def test_set_to_an_upper_bound_that_costs_nothing() -> None:
 @pytest.mark.parametrize(
     ("problem", "said"),
     [
-        (
-            two_joints(Limits(6.0, 8.0, joints=2), duration_upper=0.8),
-            r"^uniform rescaling: .* s per segment set to the duration bounds is violated; no",
-        ),
-        (
-            two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)),
-            r"lead joint 1 beyond a position limit, and no uniform",
-        ),
+        (two_joints(Limits(6.0, 8.0, joints=2), duration_upper=0.8), "bounds is violated; no"),
+        (two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)), "joint 1 beyond a position"),
         (two_joints(Limits([0.0, 3.0])), "a joint with limit 0 moves"),
         (two_joints(Limits(joints=2)), "nothing moves or nothing is limited"),
         (two_joints(curve=curves.cubic_spline(3, ((1, 0.5),))), "a prescribed derivative is not 0"),

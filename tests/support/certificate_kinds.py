@@ -60,9 +60,8 @@ def cubic() -> Problem:
 def any_curve() -> Problem:
     """A joint that brakes for the other one."""
     q = np.array([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]])
-    return Problem(
-        q, Limits([3.0, 1.5], [2.0, 4.0]), curves.cubic_spline(2), (0.4, 0.7), (2.0, 1.875)
-    )
+    limits = Limits([3.0, 1.5], [2.0, 4.0])
+    return Problem(q, limits, curves.cubic_spline(2), (0.4, 0.7), (2.0, 1.875))
 
 
 def any_curve_optimum(problem: Problem) -> float:
@@ -162,11 +161,7 @@ def stated(document: Document) -> Problem:
             for end in (0, -1)
         )
         curve = curves.cubic_spline(2, first, last)
-    return Problem(
-        np.array([numbers(row, 0.0) for row in p["waypoints"]]),
-        limits,
-        curve,
-        numbers(p["duration_lower"], 0.0),
-        numbers(p["duration_upper"], np.inf),
-        ratios=numbers(p["ratios"], 0.0) if "ratios" in p else None,
-    )
+    q = np.array([numbers(row, 0.0) for row in p["waypoints"]])
+    lower, upper = numbers(p["duration_lower"], 0.0), numbers(p["duration_upper"], np.inf)
+    ratios = numbers(p["ratios"], 0.0) if "ratios" in p else None
+    return Problem(q, limits, curve, lower, upper, ratios=ratios)

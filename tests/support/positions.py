@@ -41,13 +41,8 @@ def limited(curve: Curve, room: float, limits: Limits | None = None) -> Problem:
     return Problem(WAYPOINTS, within, curve, 0.05, 6.0)
 
 
-SWINGING = Problem(
-    WAYPOINTS[:, :2],
-    Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38]),
-    curves.cubic_spline(3),
-    0.05,
-    6.0,
-)
+_RANGED = Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38])
+SWINGING = Problem(WAYPOINTS[:, :2], _RANGED, curves.cubic_spline(3), 0.05, 6.0)
 """Left beyond the way-points: the shortest cubic spline swings further, some others do not."""
 
 

@@ -4,11 +4,8 @@ import numpy as np
 from trajgap.problem import Interpolant, Limits, Problem, curves
 
 NATURAL = ((2, 0.0),)
-QUINTIC = Problem(
-    np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]]),
-    Limits([1.0, 0.9], [2.0, 1.5]),
-    curves.quintic_spline(3),
-)
+_WAY = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+QUINTIC = Problem(_WAY, Limits([1.0, 0.9], [2.0, 1.5]), curves.quintic_spline(3))
 
 
 def _cubic_curve(rng: np.random.Generator) -> Interpolant:
@@ -64,9 +61,8 @@ def random_declared(seed: int) -> Problem:
     upper = rng.uniform(4.0, 9.0, 3) if rng.random() < 0.3 else np.inf
     low = -high if other.random() < 0.7 else -high * other.uniform(0.5, 1.5, high.shape)
     limits = Limits(*np.stack([low, high], axis=2), bottom, joints=joints)
-    return Problem(
-        q, limits, (curves.three_five_three(), curves.piecewise((4, 3, 4)))[seed % 2], lower, upper
-    )
+    curve = (curves.three_five_three(), curves.piecewise((4, 3, 4)))[seed % 2]
+    return Problem(q, limits, curve, lower, upper)
 
 
 DEGREES = ((3, 5, 3), (4, 3, 4), (5,), (5, 5), (3, 3, 3, 3))

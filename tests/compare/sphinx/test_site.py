@@ -356,10 +356,8 @@ def test_a_gallery_shows_each_picture_once(tmp_path):
     pytest.importorskip("sphinx_gallery")
     scatter = tent_scatter(members=5, dimensions=2, bounds=(0.0, 1.0), beta=0.5)
     names = {"___": tent_picture(scatter, unit="s", title="T"), "other": 1}
-    block = {
-        "example_globals": names,
-        "image_path_iterator": iter([str(tmp_path / "one.png"), str(tmp_path / "two.png")]),
-    }
+    paths = iter([str(tmp_path / name) for name in ("one.png", "two.png")])
+    block = {"example_globals": names, "image_path_iterator": paths}
     page = scrape_pictures((), block, {"src_dir": str(tmp_path)})
     assert "one.svg" in page
     assert "In double precision" in page

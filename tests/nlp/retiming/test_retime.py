@@ -102,11 +102,9 @@ def test_retiming_never_takes_longer_than_a_feasible_trajectory(seed: int) -> No
         curves.piecewise((4, 3, 4), 2),
     )[seed % 6]
     shape = (len(interpolant.waypoint_breaks), joints)
-    problem = Problem(
-        generator.normal(size=shape) + generator.normal(size=joints),
-        Limits(generator.uniform(1, 6, joints), generator.uniform(2, 20, joints)),
-        interpolant,
-    )
+    q = generator.normal(size=shape) + generator.normal(size=joints)
+    limits = Limits(generator.uniform(1, 6, joints), generator.uniform(2, 20, joints))
+    problem = Problem(q, limits, interpolant)
     h = generator.uniform(0.3, 1.5, interpolant.segments)
     repaired = h * check(problem, h).stretch
     curve = fit(interpolant, problem.waypoints, repaired)

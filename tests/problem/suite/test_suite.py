@@ -136,11 +136,9 @@ def test_a_malformed_row_is_refused() -> None:
 def test_a_case_is_loaded_by_its_name_in_the_suite_or_the_nearest_is_said() -> None:
     assert load_case("suite:353-puma560").problem().segments == 3
     assert load_instance("suite:353-puma560") == load_instance("353-puma560")
+    loaders = (load_instance, "", TrajgapError), (load_case, "suite:", CaseError)
     for name, said in (("353-puma56", "did you mean '{}353-puma560'?"), ("q", "lists them")):
-        for load, prefix, error in (
-            (load_instance, "", TrajgapError),
-            (load_case, "suite:", CaseError),
-        ):
+        for load, prefix, error in loaders:
             with pytest.raises(error, match=re.escape(said.format(prefix)) + "$"):
                 load(prefix + name)
 

@@ -110,9 +110,8 @@ def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: InstancesRe
         assert two.slower.total == pytest.approx(one.slower.total / 2, rel=1e-9)
         assert two.faster.total == pytest.approx(one.faster.total / 2, rel=1e-9)
     for effect in (Effect.BOTH, Effect.ALGORITHM):
-        np.testing.assert_array_equal(
-            twice.reductions("as-printed", effect), result.reductions("as-printed", effect)
-        )
+        one, two = (runs.reductions("as-printed", effect) for runs in (result, twice))
+        np.testing.assert_array_equal(two, one)
 
 
 def test_optima_against_a_scan_of_the_shares(result: InstancesResult) -> None:
@@ -292,9 +291,8 @@ def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
     shown = np.sort(points[:, 0])
     values = [result.reductions(r, Effect.BOTH, at) for r in result.readings for at in (0, 1)]
     np.testing.assert_allclose(shown, np.sort(100 * np.concatenate(values)), rtol=1e-12)
-    assert [t.get_text() for t in both.get_yticklabels()] == [
-        result.label(reading) for reading in result.readings
-    ]
+    labels = [result.label(reading) for reading in result.readings]
+    assert [t.get_text() for t in both.get_yticklabels()] == labels
     assert sum(len(c.get_offsets()) for c in curve.collections) == len(result.samples)
     assert alone.get_title(loc="left") == "algorithm alone"
     assert "as-printed: both together median" in picture.description

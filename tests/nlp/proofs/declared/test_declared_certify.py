@@ -200,11 +200,8 @@ def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) 
         certify(IRB, resume=state)
 
 
-SPLINE = Problem(
-    np.random.default_rng(0).uniform(-1.5, 1.5, (7, 3)),
-    Limits(1.5, 2.0, 6.0, joints=3),
-    curves.cubic_spline(6),
-)
+WALK = np.random.default_rng(0).uniform(-1.5, 1.5, (7, 3))
+SPLINE = Problem(WALK, Limits(1.5, 2.0, 6.0), curves.cubic_spline(6))
 
 
 def test_long_cubic_splines_begin_with_boxes_of_durations() -> None:
