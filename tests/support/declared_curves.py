@@ -45,7 +45,6 @@ def drawn(name: str, rng: np.random.Generator, joints: int) -> Problem:
     q = rng.normal(0.3, 1.0, (count, joints))
     high = rng.uniform(0.5, 3.0, (3, joints)) * np.array([[1.0], [2.0], [9.0]])
     low = -high * rng.uniform(0.6, 1.4, (3, joints))
-    limits = Limits(
-        *np.stack([low, high], axis=2), q.min(axis=0) - 0.5, q.max(axis=0) + rng.uniform(0.1, 1.0)
-    )
+    ranges = q.min(axis=0) - 0.5, q.max(axis=0) + rng.uniform(0.1, 1.0)
+    limits = Limits(*np.stack([low, high], axis=2), *ranges)
     return Problem(q, limits, curve, rng.uniform(0.1, 0.2, curve.segments))

@@ -98,9 +98,8 @@ def finals(record: heuristics.WOA | heuristics.PSO, shift: float, seeds: int = 1
     box = heuristics.Bounds(np.full(5, low), np.full(5, high))
     found = []
     for seed in range(seeds):
-        *_, last = heuristics.states(
-            record, lambda x: bowl(x, shift), box, np.random.default_rng(seed)
-        )
+        rng = np.random.default_rng(seed)
+        *_, last = heuristics.states(record, lambda x: bowl(x, shift), box, rng)
         found.append(last.best_fitness)
     return np.array(found)
 
@@ -139,10 +138,8 @@ def test_against_mealpy(shift: float) -> None:
         "obj_func": lambda x: float(bowl(x, shift)),
         "log_to": None,
     }
-    theirs = [
-        Member(epoch=150, pop_size=30).solve(question, seed=seed).target.fitness
-        for seed in range(40)
-    ]
+    member = Member(epoch=150, pop_size=30)
+    theirs = [member.solve(question, seed=seed).target.fitness for seed in range(40)]
     record = heuristics.WOA(replacement="greedy", r_rule="shared", counter="one")
     assert mannwhitneyu(finals(record, shift, 40), theirs).pvalue > 0.01
 

@@ -9,6 +9,7 @@ from support.b_splines import clamped, uniform
 from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import Limits, Verdict, check, curves, evaluate, load_case
+from trajgap.problem.curves import solve_in_closed_form
 
 POLISH = "irb1600-ga-cubic-bspline"
 BEST = {
@@ -29,9 +30,7 @@ UNITS = tuple(BEST)
 def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
     """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    expected = curves.solve_in_closed_form(
-        problem.curve, problem.waypoints, problem.limits.derivatives
-    )
+    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
     total = expected.sum()
     assert total == pytest.approx(BEST[units][0], abs=1e-9)
     start = random_starts(problem, 1, np.random.default_rng(11))
@@ -87,9 +86,7 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     assert solution.check.limits is Verdict.PASS
     assert solution.kkt_residual <= 1e-8
     if kind[3] == "stretched":
-        wanted = curves.solve_in_closed_form(
-            problem.curve, problem.waypoints, problem.limits.derivatives
-        )
+        wanted = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
         assert solution.total_time == pytest.approx(wanted.sum(), rel=1e-9)
         return
     # No nearby durations, stretched until they keep the limits, are shorter.

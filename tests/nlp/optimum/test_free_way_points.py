@@ -51,9 +51,8 @@ def by_scipy(problem: Problem, ranges: bool) -> float:
 
 @pytest.mark.parametrize("virtual", [(2,), (2, 3)])
 def test_the_optimum_agrees_with_slsqp(virtual: tuple[int, ...]) -> None:
-    asked = Problem(
-        Q, LIMITS, curves.quintic_spline(3 + len(virtual), virtual=virtual), duration_lower=0.2
-    )
+    curve = curves.quintic_spline(3 + len(virtual), virtual=virtual)
+    asked = Problem(Q, LIMITS, curve, duration_lower=0.2)
     solution = solve(asked)
     assert solution.status is Status.CONVERGED
     assert solution.nodal.shape == (len(virtual), 2)
