@@ -98,8 +98,16 @@ SAYS = "In row {} the printed number is not what the numbers beside it allow."
 def made(row: object, *explanations: Explanation) -> Cause:
     sentences = (SAYS.format(row), "More.")
     head = Finding(rule="TG107", basis=Basis.COUNT, kind="k", sentences=sentences)
-    told: Any = {"says": head.message, "head": head, "readings": (), "explanations": explanations}
-    return Cause(severity=Severity.ERROR, rule="TG107", claim=None, consequences=(), **told)
+    return Cause(
+        severity=Severity.ERROR,
+        rule="TG107",
+        claim=None,
+        says=head.message,
+        head=head,
+        readings=(),
+        explanations=explanations,
+        consequences=(),
+    )
 
 
 def test_many_errors_are_counted_where_the_words_end() -> None:

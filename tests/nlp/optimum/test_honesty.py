@@ -126,7 +126,10 @@ def test_known_motions_of_a_wrong_shape_are_refused() -> None:
             },
             "needs an acceleration of",
         ),
-        ({"curve": curves.rest_to_rest(3, 5), "duration_upper": [0.9, 2.0, 2.0]}, "in segment 1 "),
+        (
+            {"curve": curves.rest_to_rest(3, 5), "duration_upper": [0.9, 2.0, 2.0]},
+            "in segment 1 even at the longest durations",
+        ),
     ],
 )
 def test_infeasible_is_said_with_a_proof(change: dict[str, object], reason: str) -> None:

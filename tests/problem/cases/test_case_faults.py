@@ -103,7 +103,7 @@ CASE = parse_case(BASE, "base.toml")
         (lambda: load_case("puma"), "^puma: neither a published case nor a file; "),
         (lambda: load_case("puma560-mnam-353"), "did you mean 'puma560-mnam-pso-353'"),
         (lambda: CASE.problem("on"), "^base.toml: problem: no problem 'on'; did you mean 'one'"),
-        (lambda: CASE.problem("one", "deg"), "reading: no reading 'deg'; known: plain, rad"),
+        (lambda: CASE.problem("one", "deg"), "^base.toml: reading: no reading 'deg'; known"),
         (lambda: CASE.claim("time"), "^base.toml: claim: no claim 'time'; did you mean 'times'"),
         (lambda: CASE.problem(coupling="x"), "coupling: unknown coupling 'x'; use shared, per-j"),
         (lambda: CASE.claim_durations(CASE.claim("peak")), "'peak': states no durations; choose"),

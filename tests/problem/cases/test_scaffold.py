@@ -71,7 +71,7 @@ def test_tables_of_many_forms_hold_the_same_way_points(table, text, joints, labe
     case = parse_case(scaffold(path, {"position": "deg"}, warn=said.append), "x")
     assert (case.robot.joints, case.document.waypoints.labels) == (joints, labels)
     points = np.rad2deg(case.problem().waypoints)
-    np.testing.assert_allclose(points, [[10, 20], [30, 40]], atol=1e-9)
+    np.testing.assert_allclose(points, [[10, 20], [30, 40]], rtol=0, atol=1e-9)
     # Numbers in their order are names, or a way-point whose header is missing.
     warned = f"{path}: line 1 is read as the names of the joints, 1, 2; if it is a way-point, "
     assert said == ([warned + "put a header above it"] if text.startswith("1") else [])
