@@ -12,17 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from support.exact_motions import Curve, Row
-from trajgap.problem import TrajgapError, Verdict
-from trajgap.problem.motions import (
-    MOTION_TOLERANCE,
-    Interpolation,
-    JointLimits,
-    Motion,
-    check_motion,
-    check_samples,
-    interpolated,
-    read_motion,
-)
+from trajgap.problem import TrajgapError, Verdict, motions
 
 from attacks.attack import demand, keep
 from attacks.cases import Rng
@@ -36,7 +26,7 @@ from attacks.motion_files import (
     through,
 )
 
-_TOLERANCE = Fraction(MOTION_TOLERANCE)
+_TOLERANCE = Fraction(motions.MOTION_TOLERANCE)
 """Excess that counts as kept."""
 _DIGIT = Fraction(1, 10**15)
 """Relative: limits and tolerances are rounded to float64."""
@@ -46,7 +36,9 @@ _STILL = Fraction(1, 10**6)
 """Share of a joint's largest speed below which it may count as standing."""
 
 
-def excess(given: JointLimits, curves: list[Curve], still: Fraction, slower: Fraction) -> Fraction:
+def excess(
+    given: motions.JointLimits, curves: list[Curve], still: Fraction, slower: Fraction
+) -> Fraction:
     """Largest peak over its limit, less 1; of positions over half of their range."""
     most = Fraction(-1)
     for j, curve in enumerate(curves):
@@ -72,7 +64,7 @@ def excess(given: JointLimits, curves: list[Curve], still: Fraction, slower: Fra
     return most
 
 
-def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> JointLimits | None:
+def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> motions.JointLimits | None:
     """One limit near its peak, the others some way off or none, one-sided ones among them."""
     count = len(curves)
     lower, upper = np.full((count, 4), -np.inf), np.full((count, 4), np.inf)
@@ -115,7 +107,7 @@ def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> JointLimits | No
             upper[j, 2], braking[j] = grows * scale[0], falls * scale[1]
             lower[j, 2] = -upper[j, 2]
     names = tuple(f"j{k + 1}" for k in range(count))
-    return JointLimits(names, lower, upper, braking)
+    return motions.JointLimits(names, lower, upper, braking)
 
 
 def _scaled(curves: list[Curve], factor: Fraction) -> list[Curve]:
@@ -131,7 +123,7 @@ _FACTORS = {"rad": 1.0, "deg": np.pi / 180.0, "mm": 1e-3}
 def verdicts(rng: Rng, folder: Path) -> str | None:
     """One motion through one reader and one interpolation."""
     reader = str(rng.choice(READERS, p=[0.36, 0.14, 0.16, 0.1, 0.08, 0.16]))
-    how = str(rng.choice([str(x) for x in Interpolation]))
+    how = str(rng.choice([str(x) for x in motions.Interpolation]))
     count = int(rng.integers(4, 9))
     times = some_times(rng, count)
     bases = [some_curve(rng, times) for _ in range(int(rng.integers(1, 3)))]
@@ -154,11 +146,8 @@ def verdicts(rng: Rng, folder: Path) -> str | None:
         stated = {"time_noise": written.time_noise}
         if written.noise is not None:
             stated["noise"] = (written.noise,)
-        ordered = all(
-            a.time < b.time
-            for table in (written.drawn, written.shown)
-            for a, b in pairwise(table[0])
-        )
+        rows = pairwise(written.drawn[0]), pairwise(written.shown[0])
+        ordered = all(a.time < b.time for pairs in rows for a, b in pairs)
         if not ordered:
             return "samples at one time"
         if how == "none":
@@ -174,14 +163,16 @@ def verdicts(rng: Rng, folder: Path) -> str | None:
         return None
     keep(folder, limits=f"{limits.lower}\n{limits.upper}\n{limits.deceleration}")
     try:
-        content = read_motion(path, (units,), **stated).content  # type: ignore[arg-type]
+        content = motions.read_motion(path, (units,), **stated).content  # type: ignore[arg-type]
         asked = replace(limits, joints=content.joints)
-        if isinstance(content, Motion):
-            found = check_motion(content, asked)
+        if isinstance(content, motions.Motion):
+            found = motions.check_motion(content, asked)
         elif how == "none":
-            found = check_samples(content, asked)
+            found = motions.check_samples(content, asked)
         else:
-            found = check_motion(interpolated(content, Interpolation(how)), asked)
+            found = motions.check_motion(
+                motions.interpolated(content, motions.Interpolation(how)), asked
+            )
     except TrajgapError:
         return f"{reader} {how}: refused"
     word = f"{reader} {how}: {found.verdict}"

@@ -6,24 +6,7 @@ from typing import Any
 import numpy as np
 from support.toml_text import Bare
 
-from attacks.cases import (
-    CLAIMS,
-    DERIVATIVES,
-    MEASURES,
-    PLACES,
-    UNITS,
-    Array,
-    Asked,
-    Drawn,
-    NoCurve,
-    Rng,
-    draw_asked,
-    ends_in,
-    near_limits,
-    problem_of,
-    raw_of,
-    segments_of,
-)
+from attacks import cases
 
 FACTORS = {"rad": 1.0, "deg": math.pi / 180, "s": 1.0, "ms": 1e-3}
 """What a unit is in rad and s; units of derivatives begin with one of these."""
@@ -42,14 +25,16 @@ _STRANGE = ("joint 1", "θ₁", "a.b", "x" * 40, "1-2", "J\u00e9", "关节", "q/
 """Labels that are allowed and awkward."""
 
 
-def draw_case(rng: Rng, small: bool = False) -> Drawn:
+def draw_case(rng: cases.Rng, small: bool = False) -> cases.Drawn:
     """A valid case file with problems, readings, claims, tables, algorithms and all the rest."""
     most = (4, 2) if small else (6, 3)
-    asked = draw_asked(rng, most_points=most[0], most_joints=most[1], scale=float(rng.integers(2)))
+    asked = cases.draw_asked(
+        rng, most_points=most[0], most_joints=most[1], scale=float(rng.integers(2))
+    )
     labels = tuple(asked.labels)
     if rng.random() < 0.3:
         labels = tuple(rng.permutation(_STRANGE)[: len(labels)].tolist())
-    raw = raw_of(asked, str(rng.choice(["drawn", "a", "a-b.c", "0", "x" * 60])))
+    raw = cases.raw_of(asked, str(rng.choice(["drawn", "a", "a-b.c", "0", "x" * 60])))
     raw["robot"]["joints"] = list(labels)
     raw["title"] = str(rng.choice(["drawn", "T\u00eate", "<b>&amp;</b>", "a|b", "`x` _y_ *z*"]))
     _reword(rng, raw)
@@ -70,12 +55,12 @@ def draw_case(rng: Rng, small: bool = False) -> Drawn:
         for p in [x["id"] for x in problems] or ["main"]
         for r in [x["id"] for x in readings] or ["as-printed"]
     ]
-    return Drawn(raw, {pair: asked_of(raw, *pair) for pair in pairs})
+    return cases.Drawn(raw, {pair: asked_of(raw, *pair) for pair in pairs})
 
 
-def _reword(rng: Rng, raw: dict[str, Any]) -> None:
+def _reword(rng: cases.Rng, raw: dict[str, Any]) -> None:
     """The same numbers in other units, by way-point instead of by joint, printed or exact."""
-    for key, words in UNITS.items():
+    for key, words in cases.UNITS.items():
         raw["units"][key] = str(rng.choice(words))
 
     def said(text: str, unit: str, exact: bool) -> str:
@@ -133,13 +118,13 @@ def ends_said(block: dict[str, Any], units: dict[str, str], said: Any) -> dict[s
 def _each_said(value: Any, order: int, units: dict[str, str], said: Any) -> Any:
     if isinstance(value, list):
         return [_each_said(one, order, units, said) for one in value]
-    if order > len(DERIVATIVES):
+    if order > len(cases.DERIVATIVES):
         return Bare("0")
-    return said(repr(value), units[DERIVATIVES[order - 1]], True)
+    return said(repr(value), units[cases.DERIVATIVES[order - 1]], True)
 
 
 def _problems(
-    rng: Rng, raw: dict[str, Any], asked: Asked, labels: tuple[str, ...]
+    rng: cases.Rng, raw: dict[str, Any], asked: cases.Asked, labels: tuple[str, ...]
 ) -> list[dict[str, Any]]:
     if rng.random() < 0.6:
         return []
@@ -151,7 +136,7 @@ def _problems(
     return [*made, second]
 
 
-def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any]]:
+def _readings(rng: cases.Rng, raw: dict[str, Any], asked: cases.Asked) -> list[dict[str, Any]]:
     if rng.random() < 0.5:
         return []
     made: list[dict[str, Any]] = [{"id": "as-is", "why": "as printed"}]
@@ -162,14 +147,14 @@ def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any
         match kind:
             case "units":
                 key = str(rng.choice(["velocity", "acceleration"]))
-                other = [u for u in UNITS[key] if u != raw["units"][key]]
+                other = [u for u in cases.UNITS[key] if u != raw["units"][key]]
                 own["units"] = {key: other[0]}
             case "angles":
                 own["units"] = {"position": "deg" if raw["units"]["position"] == "rad" else "rad"}
             case "sides":
                 pairs = [[Bare(f"{-x:.3g}"), f"{y:.3g}"] for x, y in rng.uniform(9, 90, (many, 2))]
                 own["limits"] = {"velocity": pairs}
-            case "ends" if segments_of(asked.block, 9) == 8:
+            case "ends" if cases.segments_of(asked.block, 9) == 8:
                 start, finish = rng.uniform(-9, 9, (2, many))
                 own["interpolant"] = {
                     "family": "cubic-spline",
@@ -180,7 +165,7 @@ def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any
                 own["limits"] = {"acceleration": f"{rng.uniform(30, 90):.3g}", "jerk": Bare("inf")}
             case "durations":
                 own["durations"] = {"lower": Bare("0"), "upper": Bare("inf")}
-            case "curve" if segments_of(asked.block, 9) == 8:
+            case "curve" if cases.segments_of(asked.block, 9) == 8:
                 family = rng.choice(["jtraj", "cubic-spline", "uniform-cubic-b-spline"])
                 own["interpolant"] = {"family": str(family)}
                 if family == "uniform-cubic-b-spline":
@@ -192,12 +177,14 @@ def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any
     return made
 
 
-def _claims(rng: Rng, raw: dict[str, Any], pair: tuple[str, str], problem: str | None) -> None:
+def _claims(
+    rng: cases.Rng, raw: dict[str, Any], pair: tuple[str, str], problem: str | None
+) -> None:
     """One claim of each quantity, some of them; and what they refer to."""
-    posed = problem_of(Drawn(raw, {}), pair)
+    posed = cases.problem_of(cases.Drawn(raw, {}), pair)
     try:
-        h = near_limits(rng, posed, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
-    except NoCurve:
+        h = cases.near_limits(rng, posed, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
+    except cases.NoCurve:
         h = np.ones(posed.curve.segments)
     h = h / FACTORS[raw["units"]["time"]]
     raw["algorithms"] = []
@@ -215,7 +202,7 @@ def _claims(rng: Rng, raw: dict[str, Any], pair: tuple[str, str], problem: str |
         claims.append({"id": name, "quantity": "durations", **common, "durations": durations})
         if rng.random() < 0.5:
             claims[-1]["total"] = _digits(sum(map(float, durations)), places)
-    drawn = rng.permutation(CLAIMS)[: rng.integers(len(CLAIMS) + 1)]
+    drawn = rng.permutation(cases.CLAIMS)[: rng.integers(len(cases.CLAIMS) + 1)]
     for quantity in drawn:
         if quantity != "durations":
             claims.append({"id": f"c-{quantity}".replace("_", "-"), "quantity": str(quantity)})
@@ -233,7 +220,7 @@ def _claims(rng: Rng, raw: dict[str, Any], pair: tuple[str, str], problem: str |
 
 
 def _claim(
-    rng: Rng, quantity: str, raw: dict[str, Any], claims: list[dict[str, Any]], h: Array
+    rng: cases.Rng, quantity: str, raw: dict[str, Any], claims: list[dict[str, Any]], h: cases.Array
 ) -> dict[str, Any]:
     joints, points = len(raw["robot"]["joints"]), _points(raw)
     match quantity:
@@ -245,15 +232,18 @@ def _claim(
         case "improvement":
             return {"slower": "d-2", "faster": "d-1", "percent": "9.1"}
         case "peak":
-            key = str(rng.choice(DERIVATIVES))
+            key = str(rng.choice(cases.DERIVATIVES))
             value = f"{10 ** rng.uniform(-1, 2):.3g}"
             own = {"of": "d-1", "derivative": key}
             return own | ({"value": value} if rng.random() < 0.5 else {"values": [value] * joints})
         case "measure":
-            key, kind = str(rng.choice(DERIVATIVES)), str(rng.choice(MEASURES))
+            key, kind = str(rng.choice(cases.DERIVATIVES)), str(rng.choice(cases.MEASURES))
             return {"of": "d-1", "derivative": key, "measure": kind, "value": "1.3"}
         case "value":
-            key, place = str(rng.choice(("position", *DERIVATIVES))), str(rng.choice(PLACES))
+            key, place = (
+                str(rng.choice(("position", *cases.DERIVATIVES))),
+                str(rng.choice(cases.PLACES)),
+            )
             return {"of": "d-1", "derivative": key, "place": place, "values": ["-1.3"] * joints}
         case "convergence":
             return {"iterations": Bare("30")}
@@ -284,7 +274,7 @@ def _points(raw: dict[str, Any]) -> int:
     return len(way["joint_rows"][0]) if "joint_rows" in way else len(way["waypoint_rows"])
 
 
-def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
+def asked_of(raw: dict[str, Any], problem: str, reading: str) -> cases.Asked:
     """What a case file asks under a problem and a reading, read a second time."""
     layers = [raw]
     for key, name in (("problems", problem), ("readings", reading)):
@@ -306,29 +296,29 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
     labels = raw["robot"]["joints"]
     columns = [j for j, label in enumerate(labels) if label in taken]
     points = np.array([[float(x) for x in row] for row in rows]).T * own["position"]
-    segments = segments_of(block, len(points))
+    segments = cases.segments_of(block, len(points))
 
-    def each(values: Any, count: int, default: float, factor: float) -> Array:
+    def each(values: Any, count: int, default: float, factor: float) -> cases.Array:
         if values is None:
             return np.full(count, default)
         if not isinstance(values, list):
             values = [values] * count
         return np.array([float(x) for x in values]) * factor
 
-    def limit(key: str, default: float, side: int = 0) -> Array:
+    def limit(key: str, default: float, side: int = 0) -> cases.Array:
         unit = own["position" if key.startswith("position") else key]
         given = limits.get(key)
         if isinstance(given, list):
             given = [(x[1], -float(x[0]))[side] if isinstance(x, list) else x for x in given]
         return each(given, len(labels), default, unit)[columns]
 
-    sides = [[limit(key, np.inf, side) for key in DERIVATIVES] for side in (1, 0)]
-    in_si = {r: own[key] for r, key in enumerate(DERIVATIVES, 1)}
+    sides = [[limit(key, np.inf, side) for key in cases.DERIVATIVES] for side in (1, 0)]
+    in_si = {r: own[key] for r, key in enumerate(cases.DERIVATIVES, 1)}
     ends, finish = (
         {r: v[columns] * in_si.get(r, 1.0) for r, v in end.items()}
-        for end in ends_in(block, len(labels))
+        for end in cases.ends_in(block, len(labels))
     )
-    return Asked(
+    return cases.Asked(
         block,
         points[:, columns],
         np.moveaxis(np.array(sides), 1, 2),

@@ -7,23 +7,8 @@ from typing import Any
 import numpy as np
 from support.positions import over
 
+from attacks import cases
 from attacks.attack import Attack, demand, keep
-from attacks.cases import (
-    DERIVATIVES,
-    Array,
-    Asked,
-    Drawn,
-    NoCurve,
-    Rng,
-    alone,
-    draw_asked,
-    draw_family,
-    fenced,
-    half_bounded,
-    near_limits,
-    problem_of,
-    raw_of,
-)
 from attacks.grammar import asked_of, draw_case
 from attacks.truth import Truth, truth
 
@@ -37,19 +22,23 @@ _BOX_SAMPLES = 12
 """Random points of a box of inputs that print alike."""
 
 
-def _draw(rng: Rng, folder: Path, bounds: float = 0.3) -> tuple[Asked, Any, Array, Truth]:
+def _draw(
+    rng: cases.Rng, folder: Path, bounds: float = 0.3
+) -> tuple[cases.Asked, Any, cases.Array, Truth]:
     """A question, and durations near its limits: just inside, just outside, or far off."""
-    asked = draw_asked(rng, draw_family(rng), bounds=bounds, scale=float(rng.integers(4)))
+    asked = cases.draw_asked(
+        rng, cases.draw_family(rng), bounds=bounds, scale=float(rng.integers(4))
+    )
     off = float(rng.choice([0.0, 1e-8, 1e-5, 1e-3, 0.1, 1.0])) * rng.choice([-0.5, 1.0])
-    problem = problem_of(alone(asked))
-    h = near_limits(rng, problem, SPREAD)
+    problem = cases.problem_of(cases.alone(asked))
+    h = cases.near_limits(rng, problem, SPREAD)
     # Which limit is active is not known: all durations by one factor moves every ratio.
     h = h * (1.0 - off / 4)
-    keep(folder, case=alone(asked).text, durations=repr(h.tolist()))
+    keep(folder, case=cases.alone(asked).text, durations=repr(h.tolist()))
     return asked, problem, h, truth(asked, problem.curve, h)
 
 
-def agrees(found: Any, true: Truth, asked: Asked, h: Array, what: str = "") -> None:
+def agrees(found: Any, true: Truth, asked: cases.Asked, h: cases.Array, what: str = "") -> None:
     """Break where a check says of durations what is not true."""
     worst = true.worst(asked, h)
     slack = (true.error + DIGITS) * worst
@@ -72,26 +61,26 @@ def agrees(found: Any, true: Truth, asked: Asked, h: Array, what: str = "") -> N
         demand(true.jumps.max() > 1e-10, f"nothing jumps: {true.jumps}")
 
 
-def verdict(rng: Rng, folder: Path) -> str | None:
+def verdict(rng: cases.Rng, folder: Path) -> str | None:
     """The verdict on durations near the limits."""
     from trajgap.problem import check
 
     try:
         asked, problem, h, true = _draw(rng, folder)
-    except NoCurve:
+    except cases.NoCurve:
         return None
     found = check(problem, h)
     agrees(found, true, asked, h)
     return str(found.verdict)
 
 
-def ratios(rng: Rng, folder: Path) -> str | None:
+def ratios(rng: cases.Rng, folder: Path) -> str | None:
     """Every single peak, the feasible time, and what searches judge by."""
     from trajgap.problem import check, evaluate
 
     try:
         asked, problem, h, true = _draw(rng, folder, bounds=0.0)
-    except NoCurve:
+    except cases.NoCurve:
         return None
     found = check(problem, h)
     batch = evaluate(problem, h[None]).ratios[0]
@@ -99,7 +88,7 @@ def ratios(rng: Rng, folder: Path) -> str | None:
     for peak in found.peaks:
         if peak.joint is None or peak.quantity == "position":
             continue
-        j, r = asked.labels.index(peak.joint), DERIVATIVES.index(peak.quantity)
+        j, r = asked.labels.index(peak.joint), cases.DERIVATIVES.index(peak.quantity)
         own = float(reach[int(peak.value > 0), j, r])
         room = slack * (own + asked.sides[:, j, r].min()) + peak.error
         same = abs(abs(peak.value) - own) <= room
@@ -119,15 +108,15 @@ def ratios(rng: Rng, folder: Path) -> str | None:
     return "agrees"
 
 
-def _searched(rng: Rng, asked: Asked, h: Array, folder: Path) -> None:
+def _searched(rng: cases.Rng, asked: cases.Asked, h: cases.Array, folder: Path) -> None:
     """Break where a search judges durations around these otherwise, in fences too."""
     from trajgap.heuristics import DeathPenalty, Stretch
     from trajgap.problem import evaluate
 
     if rng.random() < 0.7:
-        asked = half_bounded(rng, fenced(rng, asked))
-    keep(folder, case=alone(asked).text)
-    problem = problem_of(alone(asked))
+        asked = cases.half_bounded(rng, cases.fenced(rng, asked))
+    keep(folder, case=cases.alone(asked).text)
+    problem = cases.problem_of(cases.alone(asked))
     some = h * rng.choice([0.97, 1.0, 1.03, 1.3], 3)[:, None] ** rng.random((3, len(h)))
     reached = evaluate(problem, some).positions
     fitness = DeathPenalty(problem)(some)
@@ -143,7 +132,7 @@ def _searched(rng: Rng, asked: Asked, h: Array, folder: Path) -> None:
         try:
             true = truth(asked, problem.curve, one)
             after = truth(asked, problem.curve, repaired[k])
-        except NoCurve:
+        except cases.NoCurve:
             continue
         places = true.positions(asked)
         close = np.isclose(places, reached[k], rtol=1e-6, atol=1e-6)
@@ -159,17 +148,17 @@ def _searched(rng: Rng, asked: Asked, h: Array, folder: Path) -> None:
             demand(worst <= 1 + 1e-6, f"a stretched motion breaks a limit: {worst:.9g}")
 
 
-def rounding(rng: Rng, folder: Path) -> str | None:
+def rounding(rng: cases.Rng, folder: Path) -> str | None:
     """The verdict over all inputs that print alike, against random inputs of the box."""
     from trajgap.compare.audits import RoundingBox, judge_rounding
     from trajgap.problem import Printed, TrajgapError
 
     try:
-        asked = draw_asked(rng, draw_family(rng), most_points=4, most_joints=2)
-        h = near_limits(rng, problem_of(alone(asked)), 1.0) * float(
+        asked = cases.draw_asked(rng, cases.draw_family(rng), most_points=4, most_joints=2)
+        h = cases.near_limits(rng, cases.problem_of(cases.alone(asked)), 1.0) * float(
             rng.choice([0.9, 0.995, 1.0, 1.005, 1.2])
         )
-    except NoCurve:
+    except cases.NoCurve:
         return None
     digits = [f"{x:.{int(rng.integers(2, 5))}g}" for x in h]
     boxes = [Printed(x) for x in digits]
@@ -177,15 +166,15 @@ def rounding(rng: Rng, folder: Path) -> str | None:
         *(np.array([getattr(b, k) for b in boxes]) for k in ("value", "lower", "upper"))
     )
     places = int(rng.integers(2, 6))
-    raw = raw_of(asked)
+    raw = cases.raw_of(asked)
     words = [[f"{x:.{places}f}" for x in row] for row in asked.waypoints.T]
     raw["waypoints"]["joint_rows"] = words
     asked = asked_of(raw, "main", "as-printed")
-    drawn = Drawn(raw, {("main", "as-printed"): asked})
+    drawn = cases.Drawn(raw, {("main", "as-printed"): asked})
     keep(folder, case=drawn.text, durations=",".join(digits))
     half = 0.5 * 10.0**-places
     way = RoundingBox(asked.waypoints, asked.waypoints - half, asked.waypoints + half)
-    problem = problem_of(drawn)
+    problem = cases.problem_of(drawn)
     try:
         found = judge_rounding(problem, times, way)
     except TrajgapError as error:
@@ -205,7 +194,7 @@ def rounding(rng: Rng, folder: Path) -> str | None:
         one = replace(asked, waypoints=points)
         try:
             worst = truth(one, problem.curve, durations).worst(one, durations)
-        except NoCurve:
+        except cases.NoCurve:
             continue
         keep(folder, point=repr((durations.tolist(), points.tolist())))
         demand(worst > 1 - 1e-6, f"breaks, but a point of the box keeps with {worst:.9g}")
@@ -219,7 +208,7 @@ def rounding(rng: Rng, folder: Path) -> str | None:
     return str(found.verdict)
 
 
-def poses(problem: Any, asked: Asked, what: str) -> None:
+def poses(problem: Any, asked: cases.Asked, what: str) -> None:
     """Break where a problem is not what a second reading of its file asks, to the last bits."""
     from trajgap.problem import as_piecewise
 
@@ -244,7 +233,7 @@ def poses(problem: Any, asked: Asked, what: str) -> None:
     demand(problem.joints == asked.labels, f"{what}joints")
 
 
-def readings(rng: Rng, folder: Path) -> str | None:
+def readings(rng: cases.Rng, folder: Path) -> str | None:
     """Problems and readings pose what a second reading of the same file says."""
     from trajgap.problem import TrajgapError, check, parse_case
 
@@ -256,9 +245,9 @@ def readings(rng: Rng, folder: Path) -> str | None:
         problem = case.problem(*pair)
         poses(problem, asked, f"{pair}: ")
         try:
-            h = near_limits(rng, problem, 1.0, float(rng.choice([0.8, 1.2])))
+            h = cases.near_limits(rng, problem, 1.0, float(rng.choice([0.8, 1.2])))
             agrees(check(problem, h), truth(asked, problem.curve, h), asked, h, f"{pair}: ")
-        except NoCurve:
+        except cases.NoCurve:
             continue
         except TrajgapError as error:
             demand("coincide, chord parameters" in str(error), f"{pair}: {error}")

@@ -243,8 +243,6 @@ def polynomials(rng: Rng, curves: list[Curve], folder: Path) -> tuple[list[Curve
     ]
     path = folder / "motion.json"
     path.write_text(json.dumps({"breaks": breaks, "coefficients": coefficients}))
-    exact = [
-        Curve([Fraction(x) for x in breaks], [[Fraction(x) for x in c] for c in one])
-        for one in floats
-    ]
+    times = [Fraction(x) for x in breaks]
+    exact = [Curve(times, [[Fraction(x) for x in c] for c in one]) for one in floats]
     return exact, path

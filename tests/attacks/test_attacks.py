@@ -18,9 +18,7 @@ from attacks.grammar import draw_case
 from attacks.mutations import damaged
 from attacks.run import ATTACKS, Account, tried, warm
 
-pytestmark = pytest.mark.skipif(
-    not sandbox.available(), reason="children are forked and watched on Linux"
-)
+pytestmark = pytest.mark.skipif(not sandbox.available(), reason="children are forked on Linux")
 
 SEED = 7
 """Another one than that of the long run."""

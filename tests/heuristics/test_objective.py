@@ -21,19 +21,7 @@ from trajgap.heuristics import (
 )
 from trajgap.heuristics.repair import compile_judge, judge_of
 from trajgap.nlp import Status, solve
-from trajgap.problem import (
-    Array,
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    evaluate,
-    piecewise,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Array, Limits, Problem, TrajgapError, Verdict, check, curves, evaluate
 from trajgap.problem.checks.checker import TOLERANCE
 from trajgap.problem.curves import kernel
 
@@ -89,12 +77,12 @@ def test_limits_and_bounds_themselves_are_within(judge: type) -> None:
     # From rest to rest no position lies beyond those of the way-points.
     q = WAYPOINTS
     ranged = WITH_JERK.with_positions(q.min(axis=0), q.max(axis=0))
-    problem = wide(curve=rest_to_rest(3, 5), limits=ranged)
+    problem = wide(curve=curves.rest_to_rest(3, 5), limits=ranged)
     np.testing.assert_array_equal(judge(problem)(np.full((1, 3), 2.5)), [7.5])
 
 
 def test_zero_is_no_duration() -> None:
-    still = Problem(np.zeros((4, 1)), Limits(1.0), three_five_three())
+    still = Problem(np.zeros((4, 1)), Limits(1.0), curves.three_five_three())
     batch = np.array([[0.0, 1.0, 1.0], [1e-3, 1.0, 1.0]])
     np.testing.assert_array_equal(DeathPenalty(still)(batch), [np.inf, 2.001])
 
@@ -112,7 +100,7 @@ def test_a_penalty_is_above_every_admissible_total(judge: type, penalty: float, 
         judge(problem_with(), penalty)
     judge(problem_with(), 7.6)
     judge(problem_with(duration_upper=0.3), 0.95)  # 3 · 0.3 s at most
-    free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
+    free = curves.piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free.*prescribe them"):
         judge(problem_with(curve=free))
 
@@ -132,7 +120,7 @@ def test_an_objective_returns_one_number_each(values: list[object], said: str) -
 
 
 def test_fixed_ratios_leave_nothing_to_search() -> None:
-    problem = Problem([[0.0], [0.5], [1.5]], Limits(1.0), cubic_spline(2), ratios="equal")
+    problem = Problem([[0.0], [0.5], [1.5]], Limits(1.0), curves.cubic_spline(2), ratios="equal")
     said = "ratios: the durations have fixed ratios, so the total is the only unknown"
     for refused in (
         lambda: DeathPenalty(problem),
@@ -193,7 +181,7 @@ def test_what_has_no_scale(limits: list[float], shorten: bool) -> None:
 
 
 def test_a_prescribed_derivative_cannot_be_stretched() -> None:
-    problem = wide(curve=cubic_spline(3, ((1, 0.5),)))
+    problem = wide(curve=curves.cubic_spline(3, ((1, 0.5),)))
     DeathPenalty(problem)
     with pytest.raises(TrajgapError, match=r"^stretch: a prescribed .* use the death penalty"):
         Stretch(problem)
@@ -232,27 +220,21 @@ def test_set_to_lower_bounds(limits: Limits) -> None:
 
 def test_set_to_an_upper_bound_that_costs_nothing() -> None:
     waypoints = np.array([0.4, 0.5, 0.50001, 1.6])
-    problem = Problem(waypoints, Limits(1.0), three_five_three())
+    problem = Problem(waypoints, Limits(1.0), curves.three_five_three())
     equal = uniform_rescaling(problem)
     cap = 0.9 * equal[0]
-    capped = Problem(waypoints, Limits(1.0), three_five_three(), 0.0, [cap, 9.0, 9.0])
+    capped = Problem(waypoints, Limits(1.0), curves.three_five_three(), 0.0, [cap, 9.0, 9.0])
     np.testing.assert_array_equal(uniform_rescaling(capped), [cap, equal[1], equal[2]])
 
 
 @pytest.mark.parametrize(
     ("problem", "said"),
     [
-        (
-            two_joints(Limits(6.0, 8.0, joints=2), duration_upper=0.8),
-            r"^uniform rescaling: .* s per segment set to the duration bounds is violated; no",
-        ),
-        (
-            two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)),
-            r"lead joint 1 beyond a position limit, and no uniform",
-        ),
+        (two_joints(Limits(6.0, 8.0, joints=2), duration_upper=0.8), "bounds is violated; no"),
+        (two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)), "joint 1 beyond a position"),
         (two_joints(Limits([0.0, 3.0])), "a joint with limit 0 moves"),
         (two_joints(Limits(joints=2)), "nothing moves or nothing is limited"),
-        (two_joints(curve=cubic_spline(3, ((1, 0.5),))), "a prescribed derivative is not 0"),
+        (two_joints(curve=curves.cubic_spline(3, ((1, 0.5),))), "a prescribed derivative is not 0"),
     ],
 )
 def test_what_has_no_uniform_rescaling(problem: Problem, said: str) -> None:
@@ -297,7 +279,7 @@ def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
 
 
 def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
-    tight = limited(cubic_spline(3), 0.001)
+    tight = limited(curves.cubic_spline(3), 0.001)
     with pytest.raises(
         TrajgapError, match=r"no upper bound .* joint \d beyond a position limit, .*; give them"
     ):
@@ -309,7 +291,7 @@ def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
 
 def test_processes_find_every_kernel_compiled() -> None:
     """Ones break a limit of velocity here: a penalty alone would not look at positions."""
-    problem = limited(cubic_spline(3), 0.3, Limits(0.1, joints=3))
+    problem = limited(curves.cubic_spline(3), 0.3, Limits(0.1, joints=3))
     compile_judge(problem)
     before = list(kernel.batch_peaks.signatures)
     assert before

@@ -42,32 +42,17 @@ from trajgap.heuristics import (
 )
 from trajgap.heuristics.repair import judge_of
 from trajgap.heuristics.side_by_side import TOGETHER, moves_together
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    quintic_spline,
-    rest_to_rest,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curves
 
 BOUNDS = {"duration_lower": 0.3, "duration_upper": 3.0}
 PROBLEM = two_joints(**BOUNDS, joints=("waist", "elbow"), name="two joints")
 STUCK = two_joints(Limits([6.0, 0.0], joints=2), duration_upper=3.0)
-JERKY = two_joints(
-    Limits([4.0, 5.0], [8.0, 9.0], [60.0, 80.0]), duration_lower=0.1, duration_upper=9.0
-)
-SPLINE = Problem(WAYPOINTS[:, 0], Limits(2.5, 6.0), cubic_spline(3), 0.05, 2.5)
-LONG = Problem(
-    np.random.default_rng(31).uniform(-2, 2, (10, 3)),
-    Limits([2.0, 3.0, 2.5], [6.0, 5.0, 9.0]),
-    quintic_spline(9),
-    0.0,
-    6.0,
-    name="nine segments",
-)
+JERKY_LIMITS = Limits([4.0, 5.0], [8.0, 9.0], [60.0, 80.0])
+JERKY = two_joints(JERKY_LIMITS, duration_lower=0.1, duration_upper=9.0)
+SPLINE = Problem(WAYPOINTS[:, 0], Limits(2.5, 6.0), curves.cubic_spline(3), 0.05, 2.5)
+WALK = np.random.default_rng(31).uniform(-2, 2, (10, 3))
+LONG_LIMITS = Limits([2.0, 3.0, 2.5], [6.0, 5.0, 9.0])
+LONG = Problem(WALK, LONG_LIMITS, curves.quintic_spline(9), 0.0, 6.0, name="nine segments")
 SEARCHES = (
     PSO(),
     MNAMPSO(),
@@ -228,8 +213,8 @@ def test_what_must_be_whole(
             call(value)
 
 
-SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), quintic_spline(3), 0.1, 4.0)
-STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), rest_to_rest(3, 5), 0.1, 4.0)
+SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), curves.quintic_spline(3), 0.1, 4.0)
+STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), curves.rest_to_rest(3, 5), 0.1, 4.0)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -267,11 +252,8 @@ def test_a_subclass_that_says_nothing_is_moved_by_itself() -> None:
     assert moves_together(PSO())
     assert not moves_together(Own())
     questions = [AskedRun(PROBLEM, seed) for seed in (1, 2)]
-    for a, b in zip(
-        run_asked(Own(iterations=4), questions),
-        run_asked(PSO(iterations=4), questions),
-        strict=True,
-    ):
+    own, plain = (run_asked(kind(iterations=4), questions) for kind in (Own, PSO))
+    for a, b in zip(own, plain, strict=True):
         assert a.trace.tobytes() == b.trace.tobytes()
 
 
@@ -293,13 +275,8 @@ def test_an_interrupt_is_answered_by_the_parent_alone(tmp_path: Path) -> None:
         "        sys.exit(130)\n",
         encoding="utf-8",
     )
-    process = subprocess.Popen(
-        [sys.executable, str(started)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    command, pipe = [sys.executable, str(started)], subprocess.PIPE
+    process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
     assert process.stdout is not None
     assert [process.stdout.readline() for _ in range(2)] == ["one\n"] * 2
     os.killpg(process.pid, signal.SIGINT)

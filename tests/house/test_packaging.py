@@ -40,9 +40,7 @@ def tracked_files() -> list[Path]:
     if listing.returncode == 0 and (ROOT / ".git").exists():
         found = [ROOT / os.fsdecode(name) for name in listing.stdout.split(b"\0") if name]
         return sorted({path for path in found if path.is_file() and not path.is_symlink()})
-    ignored = [
-        line.rstrip("/") for line in (ROOT / ".gitignore").read_text(encoding="utf-8").split()
-    ]
+    ignored = [line.rstrip("/") for line in (ROOT / ".gitignore").read_text("utf-8").split()]
     found = []
     for folder, folders, files in os.walk(ROOT):
         folders[:] = [f for f in folders if not any(fnmatch(f, pattern) for pattern in ignored)]
@@ -51,10 +49,8 @@ def tracked_files() -> list[Path]:
 
 
 def package_folders() -> dict[str, Path]:
-    return {
-        name: ROOT.joinpath(*name.split(".")[1:])
-        for name in PYPROJECT["tool"]["setuptools"]["packages"]
-    }
+    packages = PYPROJECT["tool"]["setuptools"]["packages"]
+    return {name: ROOT.joinpath(*name.split(".")[1:]) for name in packages}
 
 
 def test_listed_packages_are_the_folders() -> None:

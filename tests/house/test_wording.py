@@ -34,9 +34,8 @@ from trajgap.problem.cases import Nature
 
 SAID = Path(__file__).parent / "wording"
 """One file for each kind of page."""
-BEFORE = row("before", "4.2", where="Table 3", total="4.3") + gain(
-    "before", "d", where="abstract", percent="21"
-)
+BEFORE = row("before", "4.2", where="Table 3", total="4.3")
+BEFORE += gain("before", "d", where="abstract", percent="21")
 # A quintic from rest to rest through 1 rad within 1 rad/s takes 15/8 s.
 CASES = {
     "optimal": one_joint("0, 1", "1", "1.875", "optimal"),

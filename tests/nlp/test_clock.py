@@ -20,14 +20,7 @@ from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
 from trajgap.nlp.proofs.quintic import certifier
 from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    cubic_spline,
-    cubic_spline_virtual,
-    quintic_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, curves
 from trajgap.verify import (
     CertificateVerdict,
     Clock,
@@ -39,8 +32,8 @@ from trajgap.verify import (
 
 LATE = CertificateVerdict(False, "nothing was decided", out_of_time=True)
 WAY = np.array([[0.2, -0.3], [1.3, 0.4], [0.6, 1.1]])
-QUICK = Problem(WAY, Limits([1.1, 0.9], [1.9, 2.3]), cubic_spline(2))
-LONG = Problem(WAY[:, :1], Limits([1.1], [1.9], [7.0]), cubic_spline_virtual(3))
+QUICK = Problem(WAY, Limits([1.1, 0.9], [1.9, 2.3]), curves.cubic_spline(2))
+LONG = Problem(WAY[:, :1], Limits([1.1], [1.9], [7.0]), curves.cubic_spline_virtual(3))
 
 
 @lru_cache(maxsize=1)
@@ -151,8 +144,8 @@ def test_without_a_time_limit_boxes_are_counted(ticks: Ticking) -> None:
 
 RNG = np.random.default_rng(20261128)
 Q = RNG.normal(size=(6, 2))
-CUBIC = Problem(Q, Limits([1.1] * 2, [1.9] * 2), cubic_spline(5))
-QUINTIC = Problem(Q[:3], Limits([1.1] * 2, [1.9] * 2), quintic_spline(2))
+CUBIC = Problem(Q, Limits([1.1] * 2, [1.9] * 2), curves.cubic_spline(5))
+QUINTIC = Problem(Q[:3], Limits([1.1] * 2, [1.9] * 2), curves.quintic_spline(2))
 SLOW = np.full(5, 20.0)
 """s; no limit is near."""
 
@@ -209,7 +202,7 @@ def test_what_a_search_may_take_is_what_the_clock_leaves_it(ticks: Ticking) -> N
 
 
 def test_without_time_mean_velocities_bound_a_quintic_spline() -> None:
-    problem = Problem(Q, Limits([1.1, 0.7], [1.9] * 2), quintic_spline(5))
+    problem = Problem(Q, Limits([1.1, 0.7], [1.9] * 2), curves.quintic_spline(5))
     found = certify(problem, gap=1e-6, seconds=0.0)
     # No joint is faster on average than at all: |Δq|/V of the slowest one, segment by segment.
     least = (np.abs(np.diff(Q, axis=0)) / [1.1, 0.7]).max(axis=1).sum()
@@ -224,7 +217,7 @@ def test_without_time_mean_velocities_bound_a_quintic_spline() -> None:
 
 
 def test_an_interval_without_a_lower_bound_says_why() -> None:
-    unlimited = Problem(Q[:3], Limits([np.inf] * 2, [1.9] * 2), quintic_spline(2))
+    unlimited = Problem(Q[:3], Limits([np.inf] * 2, [1.9] * 2), curves.quintic_spline(2))
     found = certify(unlimited, gap=1e-6, seconds=0.0)
     assert (found.lower, found.proof) == (0, None)
     assert found.upper is None or found.outcome is Outcome.INTERVAL

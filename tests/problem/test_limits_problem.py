@@ -98,9 +98,7 @@ def test_a_deceleration_of_its_own_is_no_size_of_acceleration() -> None:
     assert limits.joint(2).acceleration == 4.0
     with pytest.raises(TrajgapError, match=r"limits.snap: motions from elsewhere"):
         JointLimits.of(Limits(snap=1.0), ("a",))
-    np.testing.assert_array_equal(
-        Limits(jerk=[1.0, np.inf], snap=[np.inf, 1]).smooth_orders, [2, 3]
-    )
+    assert list(Limits(jerk=[1.0, np.inf], snap=[np.inf, 1]).smooth_orders) == [2, 3]
     assert Limits(velocity=1.0).smooth_orders == 1
 
 
@@ -123,7 +121,6 @@ def test_what_was_given_is_copied_and_frozen() -> None:
     [
         ({"velocity": [1, 2], "jerk": [1, 2, 3]}, r"limits.velocity: expected one value or 3"),
         ({"acceleration": np.ones((2, 3))}, r"limits.acceleration: .* got shape \(2, 3\)"),
-        ({"acceleration": np.ones((2, 2))}, r"limits.acceleration: 1 to 1 leaves out 0"),
         ({"velocity": [1, 2], "joints": 3}, r"limits.velocity: expected one value or 3"),
         ({"velocity": [1, np.nan]}, r"limits.velocity: is NaN; write inf for no limit"),
         ({"position_upper": np.nan}, r"limits.position_upper: is NaN"),
@@ -137,10 +134,7 @@ def test_what_was_given_is_copied_and_frozen() -> None:
         ({"acceleration": [[-1, 2]], "deceleration": 1.0}, r"deceleration: .* one finite size"),
         ({"deceleration": 1.0}, r"limits.deceleration: must be positive, and go with one finite"),
         ({"acceleration": 2.0, "deceleration": 0.0}, r"limits.deceleration: must be positive"),
-        (
-            {"position_lower": [0, 2], "position_upper": [1, 1]},
-            r"limits.position_lower: lies above limits.position_upper",
-        ),
+        ({"position_lower": [0, 2], "position_upper": [1, 1]}, r"position_lower: lies above lim"),
     ],
 )
 def test_limits_refuse(arguments: dict[str, object], message: str) -> None:
@@ -181,10 +175,7 @@ def test_problem_fills_in() -> None:
         ({"waypoints": WAYPOINTS[:3]}, r"waypoints: 3-5-3 polynomials with 3 segments needs 4"),
         ({"curve": cubic_spline_virtual(5)}, r"waypoints: C2 cubic spline with two virtual .*"),
         (
-            {
-                "curve": uniform_cubic_b_spline(4, "timed"),
-                "limits": Limits(1, 2, deceleration=1),
-            },
+            {"curve": uniform_cubic_b_spline(4, "timed"), "limits": Limits(1, 2, deceleration=1)},
             r"limits.deceleration: a limit of its own is not supported on a uniform cubic B-spline",
         ),
         ({"limits": Limits([1, 2, 3])}, r"limits: given for 3 joints, way-points for 2"),
@@ -192,10 +183,7 @@ def test_problem_fills_in() -> None:
         ({"duration_upper": np.ones((3, 1))}, r"duration_upper: expected one value or 3, got 3"),
         ({"duration_lower": np.nan}, r"duration_lower: must be 0 or more and not NaN"),
         ({"duration_upper": [1, -1, 1]}, r"duration_upper: must be 0 or more and not NaN"),
-        (
-            {"duration_lower": 2, "duration_upper": [3, 1, 3]},
-            r"duration_lower: lies above duration_upper",
-        ),
+        ({"duration_lower": 2, "duration_upper": [3, 1, 3]}, r"duration_lower: lies above dura"),
         ({"duration_lower": np.inf}, r"duration bounds: no positive finite duration lies between"),
         ({"duration_upper": [1, 0, 1]}, r"duration bounds: no positive finite duration lies"),
         ({"joints": ("a",)}, r"joints: 1 labels for 2 joints"),
@@ -210,10 +198,7 @@ def test_problem_fills_in() -> None:
         ({"ratios": [1, 1, 1e13]}, r"ratios: the largest is more than 1e\+12 times the smallest"),
         ({"ratios": [1, 1, "x"]}, r'ratios: not numbers; give one per segment, "equal" or "chord"'),
         ({"ratios": "even"}, r"ratios: 'even' is unknown; give one number per segment"),
-        (
-            {"ratios": "chord", "waypoints": WAYPOINTS[[0, 1, 1, 2]]},
-            r"ratios: .* between way-points 2 and 3, which coincide",
-        ),
+        ({"ratios": "chord", "waypoints": WAYPOINTS[[0, 1, 1, 2]]}, r"2 and 3, which coincide"),
         (
             {"ratios": "chord", "waypoints": WAYPOINTS[:3], "curve": cubic_spline_virtual(3)},
             r'ratios: "chord" needs a way-point at every end of the 4',

@@ -260,10 +260,8 @@ def test_a_range_of_no_width_is_kept_by_standing_alone(order: int, moves: bool) 
         lower, upper = np.full((3, 4), -np.inf), np.full((3, 4), np.inf)
         lower[JOINT, order], upper[JOINT, order] = low, high
         limits = JointLimits(("1", "2", "3"), lower, upper, np.full(3, np.inf))
-        pieces = [
-            exact_route.fitted(still.piecewise, one.tolist(), truth.durations.tolist())
-            for one in q.T
-        ]
+        h = truth.durations.tolist()
+        pieces = [exact_route.fitted(still.piecewise, one.tolist(), h) for one in q.T]
         motion = polynomials(Exact(still, truth.durations, tuple(pieces), truth.ends))
         judged = check_motion(Motion.of_polynomial(motion), limits).limits
         # Rounding of a foreign motion's positions is never below a range of no width.

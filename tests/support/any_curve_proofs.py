@@ -18,12 +18,8 @@ from trajgap.verify import CertificateVerdict, Subject, verify_certificate as ve
 
 certify_any = partial(certify, subject=Subject.ANY)
 PUMA_PROBLEM = Problem(PUMA, PUMA_LIMITS, three_five_three())
-DETOUR = Problem(
-    np.random.default_rng(5).normal(0.0, 1.0, (4, 2)).round(2),
-    Limits([2.0, 1.5], [2.0, 3.0]),
-    cubic_spline(3),
-    duration_upper=[20.0, 30.0, 40.0],
-)
+_WALK = np.random.default_rng(5).normal(0.0, 1.0, (4, 2)).round(2)
+DETOUR = Problem(_WALK, Limits([2.0, 1.5], [2.0, 3.0]), cubic_spline(3), 0.0, [20.0, 30.0, 40.0])
 """One box does not settle it."""
 
 

@@ -14,18 +14,7 @@ import numpy as np
 from support.forgeries.forgery import document as committed
 from support.intervals import dense_best
 from trajgap.nlp import estimate_any_curve
-from trajgap.problem import (
-    Curve,
-    Limits,
-    Problem,
-    cubic_spline,
-    evaluate,
-    quintic_spline,
-    rest_to_rest,
-    solve_in_closed_form,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Curve, Limits, Problem, curves, evaluate
 from trajgap.verify import Subject
 
 Document = dict[str, Any]
@@ -65,13 +54,14 @@ def _searched(problem: Problem) -> float:
 
 def cubic() -> Problem:
     limits = Limits([1.0, 0.9], [2.0, 1.5], [9.0, 8.0])
-    return Problem(WAYPOINTS, limits, cubic_spline(3), (0.5, 1.5, 0.1), (6.0, 2.0, 7.0))
+    return Problem(WAYPOINTS, limits, curves.cubic_spline(3), (0.5, 1.5, 0.1), (6.0, 2.0, 7.0))
 
 
 def any_curve() -> Problem:
     """A joint that brakes for the other one."""
     q = np.array([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]])
-    return Problem(q, Limits([3.0, 1.5], [2.0, 4.0]), cubic_spline(2), (0.4, 0.7), (2.0, 1.875))
+    limits = Limits([3.0, 1.5], [2.0, 4.0])
+    return Problem(q, limits, curves.cubic_spline(2), (0.4, 0.7), (2.0, 1.875))
 
 
 def any_curve_optimum(problem: Problem) -> float:
@@ -88,7 +78,7 @@ def _alone(needs: np.ndarray, problem: Problem) -> float:
 def rest_optimum(problem: Problem) -> float:
     """Each segment alone, stretched until it keeps its limits."""
     each = zip(problem.waypoints[:-1], problem.waypoints[1:], strict=True)
-    alone = [Problem(np.array(q), problem.limits, rest_to_rest(1, 5)) for q in each]
+    alone = [Problem(np.array(q), problem.limits, curves.rest_to_rest(1, 5)) for q in each]
     needs = [float(evaluate(one, [[1.0]]).stretch[0]) for one in alone]
     return _alone(np.array(needs), problem)
 
@@ -96,7 +86,7 @@ def rest_optimum(problem: Problem) -> float:
 def stretched_optimum(problem: Problem) -> float:
     """The floating-point closed form of `trajgap.problem`."""
     limits = problem.limits.derivatives
-    return _alone(solve_in_closed_form(problem.curve, problem.waypoints, limits), problem)
+    return _alone(curves.solve_in_closed_form(problem.curve, problem.waypoints, limits), problem)
 
 
 def ratios_optimum(problem: Problem) -> float:
@@ -113,20 +103,20 @@ def ratios_optimum(problem: Problem) -> float:
 SHORT = (0.5, 0.1, 0.1)
 KINDS = {
     "declared": Kind(
-        lambda: posed(three_five_three(), 8.0, SHORT, (6.0, 6.0, 7.0)), 0.03, _searched
+        lambda: posed(curves.three_five_three(), 8.0, SHORT, (6.0, 6.0, 7.0)), 0.03, _searched
     ),
     "rest-to-rest": Kind(
-        lambda: posed(rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)),
+        lambda: posed(curves.rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)),
         1e-6,
         rest_optimum,
         exact=True,
     ),
     "quintic-spline": Kind(
-        lambda: posed(quintic_spline(3), 9.0, SHORT, positions=()), 0.1, _searched
+        lambda: posed(curves.quintic_spline(3), 9.0, SHORT, positions=()), 0.1, _searched
     ),
     "stretched": Kind(
         lambda: posed(
-            uniform_cubic_b_spline(4, "stretched"), 9.0, (0.5, 4.0, 0.1), (6.0, 7.0, 8.0)
+            curves.uniform_cubic_b_spline(4, "stretched"), 9.0, (0.5, 4.0, 0.1), (6.0, 7.0, 8.0)
         ),
         1e-6,
         stretched_optimum,
@@ -134,7 +124,9 @@ KINDS = {
     ),
     # Tight in the second joint, and in no segment at its end.
     "fixed-ratios": Kind(
-        lambda: posed(quintic_spline(3), 9.0, SHORT, (9.0, 9.0, 9.0), ratios=[1.0, 1.75, 1.25]),
+        lambda: posed(
+            curves.quintic_spline(3), 9.0, SHORT, (9.0, 9.0, 9.0), ratios=[1.0, 1.75, 1.25]
+        ),
         1e-6,
         ratios_optimum,
         exact=True,
@@ -168,12 +160,8 @@ def stated(document: Document) -> Problem:
             tuple((1, float(Fraction(x))) for order, x in p["prescribed"][end] if order == 1)
             for end in (0, -1)
         )
-        curve = cubic_spline(2, first, last)
-    return Problem(
-        np.array([numbers(row, 0.0) for row in p["waypoints"]]),
-        limits,
-        curve,
-        numbers(p["duration_lower"], 0.0),
-        numbers(p["duration_upper"], np.inf),
-        ratios=numbers(p["ratios"], 0.0) if "ratios" in p else None,
-    )
+        curve = curves.cubic_spline(2, first, last)
+    q = np.array([numbers(row, 0.0) for row in p["waypoints"]])
+    lower, upper = numbers(p["duration_lower"], 0.0), numbers(p["duration_upper"], np.inf)
+    ratios = numbers(p["ratios"], 0.0) if "ratios" in p else None
+    return Problem(q, limits, curve, lower, upper, ratios=ratios)

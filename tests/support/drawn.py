@@ -17,12 +17,8 @@ from trajgap.compare.pictures.drawing import Picture, svg
 from trajgap.nlp import Evidence
 from trajgap.problem import Limits, Problem, three_five_three
 
-PROBLEM = Problem(
-    [[0.4, -1.2], [1.3, -0.9], [1.1, 0.3], [0.2, 0.9]],
-    Limits([3.0, 5.0], [9.0, 14.0]),
-    three_five_three(),
-    0.2,
-)
+_WAY = [[0.4, -1.2], [1.3, -0.9], [1.1, 0.3], [0.2, 0.9]]
+PROBLEM = Problem(_WAY, Limits([3.0, 5.0], [9.0, 14.0]), three_five_three(), 0.2)
 DURATIONS = np.array([0.7, 0.5, 0.6])
 
 LARGEST = 250_000

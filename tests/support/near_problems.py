@@ -15,7 +15,5 @@ from pathlib import Path
 
 from attacks.nasty import rebuilt
 
-NEAR = {
-    one["name"]: rebuilt(one)
-    for one in json.loads(Path(__file__).with_suffix(".json").read_text("utf-8"))
-}
+_LISTED = json.loads(Path(__file__).with_suffix(".json").read_text("utf-8"))
+NEAR = {one["name"]: rebuilt(one) for one in _LISTED}

@@ -1,41 +1,28 @@
 """Problems whose paths swing beyond their way-points, by every kind of curve."""
 
 import numpy as np
-from trajgap.problem import (
-    Array,
-    Curve,
-    Knots,
-    Limits,
-    Problem,
-    Timing,
-    clamped_readings,
-    cubic_spline,
-    cubic_spline_virtual,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Array, Curve, Knots, Limits, Problem, Timing, clamped_readings, curves
 
 WAYPOINTS = np.array([[0.3, -1.0, 2.1], [0.9, -0.55, 2.6], [0.2, 0.35, 1.4], [-0.45, 0.1, 1.9]])
 """Four of three joints, none at 0, each turning at another place."""
 _CLAMPED = ((4, Knots.CONTINUED), (5, Knots.WAYPOINTS))
 """Degrees and knots of clamped B-splines: with either, every way to place and to time them."""
 CURVES: dict[str, Curve] = {
-    "3-5-3": three_five_three(),
-    "4-3-4": piecewise((4, 3, 4)),
-    "cubic": cubic_spline(3),
-    "natural cubic": cubic_spline(3, ((2, 0.0),)),
-    "cubic that starts and ends moving": cubic_spline(3, ((1, (0.4, -0.3, 0.1)),), ((1, 0.2),)),
-    "cubic with virtual way-points": cubic_spline_virtual(4),
-    "quintic": quintic_spline(3),
-    "rest-to-rest 3": rest_to_rest(3, 3),
-    "rest-to-rest 9": rest_to_rest(3, 9),
-    "straight lines": piecewise((1, 1, 1), 0, ()),
-    "B-spline, stretched": uniform_cubic_b_spline(4, Timing.STRETCHED),
-    "B-spline, timed": uniform_cubic_b_spline(4, Timing.TIMED),
-    "B-spline, timed, natural": uniform_cubic_b_spline(4, Timing.TIMED, True),
+    "3-5-3": curves.three_five_three(),
+    "4-3-4": curves.piecewise((4, 3, 4)),
+    "cubic": curves.cubic_spline(3),
+    "natural cubic": curves.cubic_spline(3, ((2, 0.0),)),
+    "cubic that starts and ends moving": curves.cubic_spline(
+        3, ((1, (0.4, -0.3, 0.1)),), ((1, 0.2),)
+    ),
+    "cubic with virtual way-points": curves.cubic_spline_virtual(4),
+    "quintic": curves.quintic_spline(3),
+    "rest-to-rest 3": curves.rest_to_rest(3, 3),
+    "rest-to-rest 9": curves.rest_to_rest(3, 9),
+    "straight lines": curves.piecewise((1, 1, 1), 0, ()),
+    "B-spline, stretched": curves.uniform_cubic_b_spline(4, Timing.STRETCHED),
+    "B-spline, timed": curves.uniform_cubic_b_spline(4, Timing.TIMED),
+    "B-spline, timed, natural": curves.uniform_cubic_b_spline(4, Timing.TIMED, True),
     **{
         one.curve.name: one.curve
         for one in clamped_readings(4)
@@ -54,13 +41,8 @@ def limited(curve: Curve, room: float, limits: Limits | None = None) -> Problem:
     return Problem(WAYPOINTS, within, curve, 0.05, 6.0)
 
 
-SWINGING = Problem(
-    WAYPOINTS[:, :2],
-    Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38]),
-    cubic_spline(3),
-    0.05,
-    6.0,
-)
+_RANGED = Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38])
+SWINGING = Problem(WAYPOINTS[:, :2], _RANGED, curves.cubic_spline(3), 0.05, 6.0)
 """Left beyond the way-points: the shortest cubic spline swings further, some others do not."""
 
 

@@ -1,31 +1,19 @@
 """Random problems of a few segments and joints, on which each kind of proof is tried."""
 
 import numpy as np
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    cubic_spline,
-    cubic_spline_virtual,
-    piecewise,
-    quintic_spline,
-    three_five_three,
-)
+from trajgap.problem import Interpolant, Limits, Problem, curves
 
 NATURAL = ((2, 0.0),)
-QUINTIC = Problem(
-    np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]]),
-    Limits([1.0, 0.9], [2.0, 1.5]),
-    quintic_spline(3),
-)
+_WAY = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+QUINTIC = Problem(_WAY, Limits([1.0, 0.9], [2.0, 1.5]), curves.quintic_spline(3))
 
 
 def _cubic_curve(rng: np.random.Generator) -> Interpolant:
     kind = int(rng.integers(0, 4))
     if kind == 3:
-        return cubic_spline_virtual(3)
+        return curves.cubic_spline_virtual(3)
     count = int(rng.integers(2, 4))
-    curve = cubic_spline(count, NATURAL if kind == 1 else ((1, 0.0),))
+    curve = curves.cubic_spline(count, NATURAL if kind == 1 else ((1, 0.0),))
     if kind < 2:
         return curve
     ends = (curve.prescribed[0], *curve.prescribed[1:-1], NATURAL)
@@ -56,7 +44,7 @@ def random_quintic(seed: int) -> Problem:
     v = np.where(rng.random(joints) < 0.2, np.inf, v)
     shortest = np.where(rng.random(n) < 0.2, 0.8, 0.0)
     waypoints = rng.uniform(-1.5, 1.5, (n + 1, joints))
-    return Problem(waypoints, Limits(v, a, j), quintic_spline(n), shortest)
+    return Problem(waypoints, Limits(v, a, j), curves.quintic_spline(n), shortest)
 
 
 def random_declared(seed: int) -> Problem:
@@ -73,7 +61,8 @@ def random_declared(seed: int) -> Problem:
     upper = rng.uniform(4.0, 9.0, 3) if rng.random() < 0.3 else np.inf
     low = -high if other.random() < 0.7 else -high * other.uniform(0.5, 1.5, high.shape)
     limits = Limits(*np.stack([low, high], axis=2), bottom, joints=joints)
-    return Problem(q, limits, (three_five_three(), piecewise((4, 3, 4)))[seed % 2], lower, upper)
+    curve = (curves.three_five_three(), curves.piecewise((4, 3, 4)))[seed % 2]
+    return Problem(q, limits, curve, lower, upper)
 
 
 DEGREES = ((3, 5, 3), (4, 3, 4), (5,), (5, 5), (3, 3, 3, 3))
@@ -108,4 +97,4 @@ def random_in_motion(seed: int) -> Problem:
 def cubic_problem() -> Problem:
     """Two joints and virtual way-points, every derivative limited."""
     q = np.array([[0.2, -0.3], [1.3, 0.4], [0.6, 1.1]])
-    return Problem(q, Limits([1.1, 0.9], [1.9, 2.3], [7.0, 9.0]), cubic_spline_virtual(3))
+    return Problem(q, Limits([1.1, 0.9], [1.9, 2.3], [7.0, 9.0]), curves.cubic_spline_virtual(3))

@@ -3,32 +3,22 @@
 from collections.abc import Callable
 
 import numpy as np
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    cubic_spline,
-    cubic_spline_virtual,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Interpolant, Limits, Problem, curves
 
 DECLARATIONS: dict[str, Interpolant] = {
-    "3-5-3": three_five_three(),
-    "4-3-4": piecewise((4, 3, 4)),
-    "cubic": cubic_spline(4),
-    "cubic, moving ends": cubic_spline(3, ((1, 0.25),)),
-    "cubic, virtual": cubic_spline_virtual(3),
-    "quintic": quintic_spline(3),
-    "rest 3": rest_to_rest(2, 3),
-    "rest 5": rest_to_rest(2, 5),
-    "rest 7": rest_to_rest(1, 7),
-    "4-2-3": piecewise((4, 2, 3), 1),
-    "3-1-3": piecewise((3, 1, 3), 1, ((1, 0.0),)),
-    "4-1-4": piecewise((4, 1, 4), 2, ((1, 0.0),)),
-    "lines": piecewise((1, 1), 0, ()),
+    "3-5-3": curves.three_five_three(),
+    "4-3-4": curves.piecewise((4, 3, 4)),
+    "cubic": curves.cubic_spline(4),
+    "cubic, moving ends": curves.cubic_spline(3, ((1, 0.25),)),
+    "cubic, virtual": curves.cubic_spline_virtual(3),
+    "quintic": curves.quintic_spline(3),
+    "rest 3": curves.rest_to_rest(2, 3),
+    "rest 5": curves.rest_to_rest(2, 5),
+    "rest 7": curves.rest_to_rest(1, 7),
+    "4-2-3": curves.piecewise((4, 2, 3), 1),
+    "3-1-3": curves.piecewise((3, 1, 3), 1, ((1, 0.0),)),
+    "4-1-4": curves.piecewise((4, 1, 4), 2, ((1, 0.0),)),
+    "lines": curves.piecewise((1, 1), 0, ()),
     "uneven": Interpolant(
         (4, 6, 3), (3, 2), (((1, 0.0), (2, 0.0)), ((1, -0.3),), (), ((1, 0.2), (2, 0.5)))
     ),
@@ -36,9 +26,9 @@ DECLARATIONS: dict[str, Interpolant] = {
 """Determined declarations, one of each kind, and some that nobody prints."""
 
 FREE: dict[str, Interpolant] = {
-    "5-5-5 C2": piecewise((5, 5, 5), 2),
-    "5-4-5 C2": piecewise((5, 4, 5), 2),
-    "6-6 C3": piecewise((6, 6), 3),
+    "5-5-5 C2": curves.piecewise((5, 5, 5), 2),
+    "5-4-5 C2": curves.piecewise((5, 4, 5), 2),
+    "6-6 C3": curves.piecewise((6, 6), 3),
     "virtual quintics": Interpolant(
         (5, 5, 5), (4, 4), (((1, 0.0),), (), (), ((1, 0.0),)), virtual=(1,)
     ),
@@ -69,11 +59,11 @@ def sample_problem(
 
 
 FAMILIES: dict[str, Callable[[int], Interpolant]] = {
-    "3-5-3": lambda n: three_five_three(),
-    "4-3-4": lambda n: piecewise((4, 3, 4), 2),
-    "C2 cubic": cubic_spline,
-    "C4 quintic": quintic_spline,
-    "septic": lambda n: rest_to_rest(n, 7),
+    "3-5-3": lambda n: curves.three_five_three(),
+    "4-3-4": lambda n: curves.piecewise((4, 3, 4), 2),
+    "C2 cubic": curves.cubic_spline,
+    "C4 quintic": curves.quintic_spline,
+    "septic": lambda n: curves.rest_to_rest(n, 7),
 }
 """Declarations by name, for a number of segments where it is theirs to choose."""
 
@@ -99,12 +89,12 @@ WALK_LIMITS = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0])
 
 def long_curves(segments: int) -> dict[str, Interpolant]:
     return {
-        "cubic": cubic_spline(segments),
-        "quintic": quintic_spline(segments),
-        "virtual": cubic_spline_virtual(segments - 1),
-        "degrees of two kinds": piecewise((4, *(3,) * (segments - 2), 4), 2),
-        "moving ends": cubic_spline(segments, ((1, 0.25),)),
-        "ends apart": cubic_spline(segments, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
+        "cubic": curves.cubic_spline(segments),
+        "quintic": curves.quintic_spline(segments),
+        "virtual": curves.cubic_spline_virtual(segments - 1),
+        "degrees of two kinds": curves.piecewise((4, *(3,) * (segments - 2), 4), 2),
+        "moving ends": curves.cubic_spline(segments, ((1, 0.25),)),
+        "ends apart": curves.cubic_spline(segments, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
     }
 
 

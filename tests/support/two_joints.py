@@ -16,7 +16,6 @@ def two_joints(limits: Limits = LIMITS, **changes: object) -> Problem:
 
 PROBLEM = two_joints(duration_lower=0.1, duration_upper=3.0, name="two joints")
 OPEN = two_joints()
-TURNING = two_joints(
-    Limits([1.0, 2.0], 3.0), waypoints=[[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]]
-)
+_TURNING = [[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]]
+TURNING = two_joints(Limits([1.0, 2.0], 3.0), waypoints=_TURNING)
 """Joint 1 turns twice."""

@@ -48,12 +48,7 @@ def test_a_uniform_b_spline_goes_through_its_points_with_two_equal_vertices_at_e
         v = vertices(np.array([[float(row[j])] for row in problem.waypoints]))[:, 0]
         for k, piece in enumerate(curve):
             a, b, c, d = v[k : k + 4]
-            power = [
-                (a + 4 * b + c) / 6,
-                (c - a) / 2,
-                (a - 2 * b + c) / 2,
-                (d - 3 * c + 3 * b - a) / 6,
-            ]
+            power = [(a + 4 * b + c) / 6, (c - a) / 2, (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2]
             assert [float(x) for x in piece] == pytest.approx(power, abs=1e-12)
 
 

@@ -40,13 +40,10 @@ def drawn(rng: np.random.Generator, k: int) -> tuple[AxisState, AxisState, Sizes
     v, a, j = map(float, 10 ** rng.uniform(-1, 1, 3))
     first = (1.3 if k % 5 == 0 else 1) * (k % 7 > 0)
     share = rng.uniform(-1, 1, 4) * [first, k % 3 > 0, k % 4 > 0, k % 2]
-    place = rng.normal(size=2) * 10 ** rng.uniform(-2, 1, 2)
-    start = AxisState(float(place[0]), float(share[0] * v), float(share[1] * a))
-    return (
-        start,
-        AxisState(float(place[1]), float(share[2] * v), float(share[3] * a)),
-        Sizes(v, a, j),
-    )
+    places = rng.normal(size=2) * 10 ** rng.uniform(-2, 1, 2)
+    states = np.column_stack([places, share.reshape(2, 2) * [v, a]]).tolist()
+    start, finish = (AxisState(*state) for state in states)
+    return start, finish, Sizes(v, a, j)
 
 
 def arrives(profile: AxisProfile, finish: AxisState) -> bool:

@@ -70,9 +70,8 @@ def test_without_limits_the_card_praises_no_motion_for_keeping_them() -> None:
     """Any durations would: a table of times for a given path often prints no limits."""
     card = card_of(row("t", "1.0 1.0 1.0"))
     assert card.limits == Why("no limits are stated")
-    assert (
-        card.optimum == "No limits are stated: none can be broken, and no motion is the shortest."
-    )
+    words = "No limits are stated: none can be broken, and no motion is the shortest."
+    assert card.optimum == words
 
 
 @pytest.mark.parametrize(
@@ -163,9 +162,8 @@ GAP = Gap(kind=GapKind.REPORTED, lowest=0.40, highest=0.4034, reference=Referenc
 
 def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **more: Any) -> Cause:
     gap = more.pop("gap", Why("not of every reading"))
-    head = Finding(
-        rule=rule, basis=Basis.OPTIMUM, claim=claim, kind=kind or "k", gap=gap, sentences=("m",)
-    )
+    known: Any = {"kind": kind or "k", "gap": gap, "sentences": ("m",)}
+    head = Finding(rule=rule, basis=Basis.OPTIMUM, claim=claim, **known)
     changes = {"rule": rule, "claim": claim, "head": head, "readings": readings}
     return made(1).model_copy(update=changes | more)
 
@@ -210,6 +208,5 @@ def test_the_joint_whose_total_lies_farthest_is_named() -> None:
     one = longer(("durations-at-least-0.3",), gap=GAP)
     head = one.head.model_copy(update={"farthest": "mnam-joint-3"})
     (said,) = plainly(load_case(PUMA), one.model_copy(update={"head": head}))
-    assert said.endswith(
-        "joint 3 alone takes at least 40.0 % longer than a motion within the limits."
-    )
+    words = "joint 3 alone takes at least 40.0 % longer than a motion within the limits."
+    assert said.endswith(words)

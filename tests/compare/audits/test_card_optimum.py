@@ -114,10 +114,8 @@ def test_a_distance_holds_for_every_value_that_rounds_to_the_digits(
 def test_two_totals_stand_in_one_sentence() -> None:
     """2 rad take 2 s at 1.5 rad/s and 3 s at 1 rad/s; 2.1 s and 3.15 s are 5 % more."""
     parts = row("all", "2.100", problem="a"), row("slow", "3.150", problem="b")
-    asked = (
-        entry("problems", id=one, limits={"velocity": limit})
-        for one, limit in (("a", 1.5), ("b", 1))
-    )
+    limits = {"a": 1.5, "b": 1}
+    asked = (entry("problems", id=k, limits={"velocity": v}) for k, v in limits.items())
     assert line(*parts, *asked, rows=[[0, 2]]) == (
         f"2.100 s is 5.0 % above {OPTIMUM}; 3.150 s is 5.0 % above the proven optimum of 3.0000 s."
     )

@@ -53,11 +53,6 @@ def some(seeds: int = 3, algorithm: Any = SWARM, **question: Any) -> list[AskedR
     return [AskedReplay(algorithm, AskedRun(seed=seed, **given)) for seed in range(seeds)]
 
 
-def only(folder: Path) -> Path:
-    (file,) = folder.glob("*.json")
-    return file
-
-
 @pytest.mark.parametrize(
     "asked",
     [
@@ -144,7 +139,7 @@ SPOILED: dict[str, Callable[[bytes], bytes]] = {
 def test_a_spoiled_file_is_searched_over_and_replaced(tmp_path, name) -> None:
     searches = Searches(tmp_path)
     cold = searches.runs(some())
-    file = only(tmp_path)
+    (file,) = tmp_path.glob("*.json")
     own = file.read_bytes()
     file.write_bytes(SPOILED[name](own))
     again = searches.runs(some())

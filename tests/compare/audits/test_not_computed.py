@@ -122,19 +122,13 @@ def failing(error: TrajgapError) -> Any:
 
 
 TOGETHER = failing(TrajgapError("only together."))
+SEEN = {("TG101", "d", "Seen"), ("TG101", "shortest", "Seen")}
 
 
 @pytest.mark.parametrize(
     ("rule", "said"),
     [
-        (
-            broken_rule,
-            {
-                ("TG101", "d", "Seen"),
-                ("TG101", "shortest", "Seen"),
-                ("TG502", "by", "Not computed: nobody knows."),
-            },
-        ),
+        (broken_rule, {*SEEN, ("TG502", "by", "Not computed: nobody knows.")}),
         # What fails for no single claim is said all the same.
         (TOGETHER, {("TG502", None, "Not computed: only together.")}),
     ],
@@ -249,8 +243,7 @@ def test_limits_that_hold_nothing_back_are_not_called_missing() -> None:
 
 def test_no_total_is_set_beside_an_infimum_that_rounding_keeps_from_zero() -> None:
     problem = Problem([[0.0], [1.0]], Limits(velocity=float("inf")), rest_to_rest(1, 5))
-    found = Solution(
-        problem, Status.NOT_ATTAINED, vector=problem.duration_lower + 0.01, infimum=3.3e-14
-    )
+    h = problem.duration_lower + 0.01
+    found = Solution(problem, Status.NOT_ATTAINED, vector=h, infimum=3.3e-14)
     assert found.best == 0.0
     assert reference_of(found) is None

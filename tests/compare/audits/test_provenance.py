@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+import tomllib
 from datetime import date
 from itertools import permutations
 
@@ -65,9 +66,7 @@ def test_only_joints_that_move_one_by_one_have_certificates_of_their_own(monkeyp
 def test_the_command_makes_the_same_selection_again(tmp_path):
     study = Study(load_case(ID), seeds=4, problem="limit-80", reading="waypoints-rad")
     one = provenance(study, date(2026, 1, 31))
-    assert one.command == (
-        f"trajgap audit {ID} --seeds 4 --problem limit-80 --reading waypoints-rad"
-    )
+    assert one.command == f"trajgap audit {ID} --seeds 4 --problem limit-80 --reading waypoints-rad"
     beside = Study(load_case(ID), seeds=4, certificates_folder="proofs")
     assert provenance(beside).command == f"trajgap audit {ID} --seeds 4 --certificates proofs"
     file = tmp_path / "a case.toml"
@@ -183,11 +182,7 @@ def test_an_answer_of_the_authors_is_carried_and_shown() -> None:
     first, second, *_ = stated_claims(case)
     shown = "Authors asked 2026-01-31, answered 2026-02-14: A slip in print."
     assert answered(first) == shown
-    assert first.model_dump()["answer"] == {
-        "sent": "2026-01-31",
-        "answered": "2026-02-14",
-        "outcome": "A slip in print.",
-    }
+    assert first.model_dump()["answer"] == tomllib.loads(ANSWER)["answer"]
     assert second.model_dump()["answer_why"] == "the authors were not asked"
     assert answered(second) == ""
     waiting = parse_case(asked('answer = { sent = "2026-01-31" }'), "asked.toml")

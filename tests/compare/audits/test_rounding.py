@@ -14,20 +14,7 @@ from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rou
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
 from trajgap.nlp.enclosure.balls import Ball
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    evaluate,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curves, evaluate
 
 WIDTHS = ((1.0, 5e-4), (0.9995, 5e-4), (0.99, 5e-4), (0.8, 1e-2))
 """Share of the durations that just keep the limits, and how far digits reach."""
@@ -79,7 +66,7 @@ def test_several_places_share_a_proof():
     # Two cubics at rest at 0, q, 2 rad over 1 s each: peaks 1.5 q and 1.5 (2 − q) rad/s. Either can
     # be kept, not both: the worst is least at q = 1.
     limits = Limits(1.49)
-    problem = Problem([0.0, 1.02, 2.0], limits, rest_to_rest(2, 3))
+    problem = Problem([0.0, 1.02, 2.0], limits, curves.rest_to_rest(2, 3))
     h = RoundingBox.exact(np.ones(2))
     reach = np.array([[0.0], [0.1], [0.0]])
     q = RoundingBox(problem.waypoints, problem.waypoints - reach, problem.waypoints + reach)
@@ -110,7 +97,7 @@ def test_a_box_of_width_0_is_the_plain_check(name):
 
 
 def test_mean_speed_decides_where_nothing_else_does():
-    problem, h = rounded_problem(1, quintic_spline(4))
+    problem, h = rounded_problem(1, curves.quintic_spline(4))
     slow = replace(problem, limits=Limits(0.01, joints=2))
     with_zero = RoundingBox(h, 0.0 * h, 1.4 * h)
     verdict = judge_rounding(slow, with_zero)
@@ -129,7 +116,7 @@ def near(h: np.ndarray, half: float = 5e-4) -> RoundingBox:
 
 def scaled(seed: int, share: float) -> tuple[Problem, np.ndarray]:
     """A problem, and durations at a share of those that just keep its limits."""
-    problem, h = rounded_problem(seed, three_five_three())
+    problem, h = rounded_problem(seed, curves.three_five_three())
     return problem, share * check(problem, h).stretch * h
 
 
@@ -173,7 +160,7 @@ def test_a_bound_keeps_the_durations_from_repairing_the_motion():
 def test_positions():
     waypoints = np.array([[0.1], [0.9], [0.3], [0.5]])
     h = np.array([0.8, 0.7, 0.9])
-    free = Problem(waypoints, Limits(50.0), three_five_three())
+    free = Problem(waypoints, Limits(50.0), curves.three_five_three())
     capped = replace(free, limits=Limits(50.0, position_upper=0.0))
     top = max(p.value for p in check(capped, h).peaks if p.quantity == "position")
     box = boxes(h, 5e-4, waypoints, 5e-5)
@@ -197,19 +184,20 @@ def test_a_joint_that_must_not_move():
     still = np.column_stack([[0.1, 0.5, 0.3, 0.2], [0.7] * 4])
     limits = Limits([9.0, 0.0], np.inf)
     h = near(np.ones(3))
-    assert judge_rounding(Problem(still, limits, three_five_three()), h).verdict is Rounding.KEEPS
+    problem = Problem(still, limits, curves.three_five_three())
+    assert judge_rounding(problem, h).verdict is Rounding.KEEPS
     moving = still + np.array([[0.0, 0.0], [0.0, 1e-3], [0.0, 0.0], [0.0, 0.0]])
-    problem = Problem(moving, limits, three_five_three())
+    problem = Problem(moving, limits, curves.three_five_three())
     assert judge_rounding(problem, h).lower_bound_of_worst == np.inf
     assert broken(problem, h).joint == "2"
     # With way-points that may all be equal there is no proof.
     assert judge_rounding(problem, h, near(moving, 1e-3)).verdict is Rounding.UNDECIDED
-    alone = Problem(np.c_[[0.1, 0.4, 0.2, 0.6]], Limits(0.0, np.inf, joints=1), three_five_three())
+    alone = Problem([0.1, 0.4, 0.2, 0.6], Limits(0.0, np.inf, joints=1), curves.three_five_three())
     assert judge_rounding(alone, near(np.ones(3), 0.01), None).verdict is Rounding.BREAKS
 
 
 def test_a_jump_is_not_called_an_excess():
-    jumping = piecewise((3, 3), 0, ((1, 0.0), (2, 0.0)))
+    jumping = curves.piecewise((3, 3), 0, ((1, 0.0), (2, 0.0)))
     problem = Problem([[0.1], [0.9], [0.4]], Limits(50.0), jumping)
     assert check(problem, [1.0, 0.9]).verdict is Verdict.DISCONTINUOUS
     h = near(np.array([1.0, 0.9]))
@@ -219,11 +207,11 @@ def test_a_jump_is_not_called_an_excess():
 
 
 def test_nothing_limited_is_kept_by_every_duration():
-    problem = Problem([[0.1], [0.9], [0.4], [0.0]], Limits(joints=1), three_five_three())
+    problem = Problem([[0.1], [0.9], [0.4], [0.0]], Limits(joints=1), curves.three_five_three())
     verdict = judge_rounding(problem, RoundingBox.exact(np.ones(3)))
     assert (verdict.verdict, verdict.worst_at_print) == (Rounding.KEEPS, 0.0)
     assert verdict.lower_bound_of_worst is None
-    free = Problem([[0.0], [1.0], [0.5]], Limits(np.inf), cubic_spline(2), duration_lower=0.5)
+    free = Problem([0.0, 1.0, 0.5], Limits(np.inf), curves.cubic_spline(2), duration_lower=0.5)
     h = np.array([0.49, 0.6])
     below = RoundingBox(h, np.array([0.48, 0.59]), np.array([0.495, 0.61]))
     assert judge_rounding(free, below).verdict is Rounding.BREAKS
@@ -246,7 +234,7 @@ def test_bisection_tightens():
 
 
 def test_bad_boxes_are_refused():
-    problem, h = rounded_problem(0, three_five_three())
+    problem, h = rounded_problem(0, curves.three_five_three())
     for low, high, said in (
         (h[:2], h, "differ in shape"),
         (h - np.inf, h, "not finite"),
@@ -254,7 +242,7 @@ def test_bad_boxes_are_refused():
     ):
         with pytest.raises(TrajgapError, match=said):
             RoundingBox(h, low, high)
-    free = Problem(problem.waypoints, problem.limits, piecewise((5, 5, 5), 2))
+    free = Problem(problem.waypoints, problem.limits, curves.piecewise((5, 5, 5), 2))
     narrow = RoundingBox.exact(problem.waypoints[:, :1])
     for asked, box, said in (
         (problem, (RoundingBox.exact(h), narrow), r"waypoints: the box has shape \(4, 1\)"),
@@ -275,7 +263,7 @@ def test_floats_at_the_ends_of_a_box_are_on_the_safe_side_of_the_digits() -> Non
 
 def test_a_motion_whose_limited_derivative_vanishes_is_not_searched() -> None:
     """Two way-points of a timed uniform cubic B-spline: a straight line, whose jerk is 0."""
-    curve = uniform_cubic_b_spline(2, "timed")
+    curve = curves.uniform_cubic_b_spline(2, "timed")
     points = np.deg2rad([[23.0138], [-31.7772]])
     problem = Problem(points, Limits(jerk=np.deg2rad(302.867), joints=1), curve)
     found = judge_rounding(problem, near(np.array([1.7282e-05]), 5e-10), near(points, 1e-6))

@@ -269,13 +269,8 @@ def test_limits_have_their_units_where_no_way_points_are_printed() -> None:
 
 def test_a_slide_needs_metres_per_second_squared() -> None:
     """Out and back within 1 s: 2·(2 + 2)/(1 + 1) m/s² at least."""
-    problem = Problem(
-        np.array([[0.0], [1.0], [0.0]]),
-        Limits(acceleration=0.1),
-        cubic_spline(2, ends=((2, 0.0),)),
-        duration_upper=0.5,
-        linear=(True,),
-    )
+    curve = cubic_spline(2, ends=((2, 0.0),))
+    problem = Problem([0.0, 1.0, 0.0], Limits(acceleration=0.1), curve, 0.0, 0.5, linear=(True,))
     assert "needs an acceleration of 8 m/s² near way-point 2" in str(solve(problem).why)
     with pytest.raises(TrajgapError, match="linear: 2 entries for 1 joints"):
         replace(problem, linear=(True, False))

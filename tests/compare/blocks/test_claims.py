@@ -80,7 +80,6 @@ def test_a_reason_and_a_long_caveat_are_given_once() -> None:
     assert first == FIGURE_5
     assert second.why == ("For the reason given at Figure 5.",)
     here = replace(again, where="Figure 5")
-    assert list(shown_once([FIGURE_5, here]))[1].why == (
-        "For the reason given for “It is better”.",
-    )
+    (why,) = list(shown_once([FIGURE_5, here]))[1].why
+    assert why == "For the reason given for “It is better”."
     assert list(map(str, second.caveats)) == ["Rests on doubt (see above)."]

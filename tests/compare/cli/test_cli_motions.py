@@ -117,11 +117,9 @@ def test_a_misspelt_joint_is_not_passed_over(run, misspelt):
     sources = ["--limits", "l.yaml", "--urdf", "arm.urdf", "--velocity", "2"]
     wanted = ("j_2", "j2") if misspelt == "csv" else ("j2", "j_2")
     file = "l.yaml" if misspelt == "csv" else changed
-    assert_refused(
-        run("check", "m.csv", *sources, "--interpolation", "quintic"),
-        f"{file}: {wanted[0]}: is not a joint with limits there; rename it or add it;",
-        f"did you mean {wanted[1]!r}",
-    )
+    ended = run("check", "m.csv", *sources, "--interpolation", "quintic")
+    said = f"{file}: {wanted[0]}: is not a joint with limits there; rename it or add it;"
+    assert_refused(ended, said, f"did you mean {wanted[1]!r}")
 
 
 def test_thirty_thousand_samples_of_seven_joints(run):
@@ -198,8 +196,7 @@ def test_a_repaired_message_and_polynomials_come_as_they_came_in(run, folder):
     assert [one["positions"] for one in slow] == [one["positions"] for one in points]
     assert slow[1]["time_from_start"] == {"sec": 2, "nanosec": pytest.approx(666666667, abs=1)}
     assert slow[0]["velocities"] == []
-    cubic = {"joints": ["j1"], "breaks": [1.0, 3.0], "c": [[[-0.25]], [[0.75]], [[0.0]], [[0.0]]]}
-    cubic["x"] = cubic.pop("breaks")
+    cubic = {"joints": ["j1"], "x": [1.0, 3.0], "c": [[[-0.25]], [[0.75]], [[0.0]], [[0.0]]]}
     (folder / "p.json").write_text(json.dumps(cubic))
     found = run.document("check", "p.json", "--velocity", "0.5", "--repair", "q.json")["repaired"]
     assert found["result"]["verdict"] == "pass"
@@ -225,10 +222,8 @@ def test_a_repaired_file_is_read_back_whatever_was_stated_of_the_first(run, fold
 
 def test_whole_nanoseconds_are_slowed_down_once_more(run, folder):
     """1 rad within 1300.4 ns: in 1300 ns, as a message rounds them, the limit is exceeded."""
-    points = [
-        {"positions": [float(k)], "time_from_start": {"sec": 0, "nanosec": 1000 * k}}
-        for k in range(2)
-    ]
+    stamps = [{"sec": 0, "nanosec": 1000 * k} for k in range(2)]
+    points = [{"positions": [float(k)], "time_from_start": at} for k, at in enumerate(stamps)]
     (folder / "fast.json").write_text(json.dumps({"joint_names": ["j1"], "points": points}))
     flags = ["--velocity", str(1.0 / 1300.4e-9), "--repair", "SLOW.JSON"]
     found = run.document("check", "fast.json", *flags)["repaired"]
@@ -243,14 +238,8 @@ def test_what_no_slow_down_repairs_is_not_written(run, folder):
     assert found["repaired"] is None
     assert "slowing down does not change the path" in found["repaired_why"]
     assert not (folder / "slow.csv").exists()
-    assert_refused(
-        run(
-            "check", "m.csv", "--velocity", "9", "--interpolation", "quintic", "--repair", "s.json"
-        ),
-        "s.json",
-        "--repair",
-        "use .csv or .txt",
-    )
+    ended = run("check", "m.csv", "--velocity", "9", *flags[2:5], "s.json")
+    assert_refused(ended, "s.json", "--repair", "use .csv or .txt")
     assert not (folder / "s.json").exists()
 
 
@@ -289,14 +278,9 @@ def test_a_urdf_says_which_joints_slide(run, folder: Path):
     flags = ["--urdf", "arm.urdf", "--interpolation", "quintic"]
     assert run.document("check", "m.csv", *flags, kind="motion_check")["units"] == ["m", "rad"]
     # In degrees the slide would keep a limit that it exceeds 57 times.
-    assert_refused(
-        run("check", "m.csv", *flags, "--units", "deg"),
-        "arm.urdf: j1: slides, but its unit is deg; give one unit for each joint, such as m,deg",
-    )
-    assert_refused(
-        run("check", "m.csv", *flags, "--units", "mm"),
-        "arm.urdf: j2: turns, but its unit is mm; give one unit for each joint, such as mm,rad",
-    )
+    for unit, joint, such in (("deg", "j1: slides", "m,deg"), ("mm", "j2: turns", "mm,rad")):
+        words = f"arm.urdf: {joint}, but its unit is {unit}; give one unit", f"such as {such}"
+        assert_refused(run("check", "m.csv", *flags, "--units", unit), *words)
     found = run.document("check", "m.csv", *flags, "--units", "mm,deg", kind="motion_check")
     assert found["units"] == ["mm", "deg"]
 

@@ -79,11 +79,8 @@ def test_new_asks_again_on_a_terminal(table: str) -> None:
 
 def test_a_wrong_unit_from_a_pipe(run: Run, table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("furlong\nrad\n"))
-    assert_refused(
-        run("new", "out.toml", "--from", table),
-        "--position-unit",
-        "give one of rad, deg, m, cm, mm",
-    )
+    ended = run("new", "out.toml", "--from", table)
+    assert_refused(ended, "--position-unit", "give one of rad, deg, m, cm, mm")
     assert not Path("out.toml").exists()
 
 
@@ -180,13 +177,7 @@ def test_new_tells_faults_at_once(run: Run, table: str, monkeypatch: pytest.Monk
     monkeypatch.setattr(sys, "stdin", io.StringIO(""))
     given = ("--velocity", "2", "--jerk", "1,2,3,4,5,6,7", "--family", "bezier")
     ended = run("new", "out.toml", "--from", table, *given)
-    options = (
-        "--jerk: lists 7",
-        "--family: 'bez",
-        "--position-unit",
-        "--velocity-unit",
-        "--jerk-unit",
-    )
-    assert_refused(ended, *options)
+    units = [f"--{quantity}-unit" for quantity in ("position", "velocity", "jerk")]
+    assert_refused(ended, "--jerk: lists 7", "--family: 'bez", *units)
     assert "--time-unit" not in ended[2]
     assert not Path("out.toml").exists()

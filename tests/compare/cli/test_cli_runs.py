@@ -177,10 +177,8 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
     assert mine
     assert len(mine[1].splitlines()) <= 10
     (folder / "mine.py").write_text(mine[1], "utf-8")
-    code, out, err = run(
-        "bench", PUMA, "--optimizer", "mine:evolve", "--seeds", "3", "--budget", "600",
-        "--no-baselines",
-    )  # fmt: skip
+    asked = ("--seeds", "3", "--budget", "600", "--no-baselines")
+    code, out, err = run("bench", PUMA, "--optimizer", "mine:evolve", *asked)
     assert (code, err) == (0, "")
     verdict = r"^Closest: mine:evolve \(median gap [0-9.]+ % over 3 runs\)\.$"
     assert re.search(verdict, out, re.MULTILINE)

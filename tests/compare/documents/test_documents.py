@@ -8,43 +8,16 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.documents import SCHEMA, assert_reasons, assert_valid, plain, report
+from trajgap.compare import documents
 from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules import RULES
 from trajgap.compare.cli.check_command import check_result
-from trajgap.compare.documents import (
-    CheckDocument,
-    Document,
-    Entry,
-    Keeping,
-    OrWhy,
-    Real,
-    Rounding,
-    Scope,
-    SolveDocument,
-    Why,
-    filled,
-    meaning,
-    meanings,
-    show_document,
-    solve_result,
-)
 from trajgap.compare.documents.checked import outwards
 from trajgap.compare.documents.export import SCHEMA_FILE, named, schema_text
 from trajgap.compare.documents.vocabulary import VOCABULARY
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.retiming.toppra_check import Retiming, retime
-from trajgap.problem import (
-    Coupling,
-    Limits,
-    Problem,
-    check,
-    cubic_spline,
-    fit,
-    load_case,
-    published_ids,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Coupling, Limits, Problem, check, curves, fit, load_case, published_ids
 from trajgap.problem.cases.claim import QUANTITY_KINDS
 
 DOCS = ROOT / "docs"
@@ -53,7 +26,7 @@ WAYPOINTS = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 1.7], [2.0, 1.2]])
 
 def problem_with(limits: Limits | None = None, **changes: Any) -> Problem:
     limits = limits or Limits(velocity=[2.0, 3.0], acceleration=[5.0, 4.0])
-    return Problem(WAYPOINTS, limits, three_five_three(), **changes)
+    return Problem(WAYPOINTS, limits, curves.three_five_three(), **changes)
 
 
 def test_a_bound_that_is_a_float_is_not_moved() -> None:
@@ -74,7 +47,7 @@ def test_the_docs_are_those_that_the_models_give() -> None:
     tables = 0
     for file in DOCS.rglob("*.md"):
         text = file.read_text("utf-8")
-        now = filled(text, RULES)
+        now = documents.filled(text, RULES)
         assert now == text, f"{file.name}: run python docs/words.py"
         tables += text.count("<!-- table: ")
     assert tables == 8
@@ -86,28 +59,34 @@ def test_every_word_is_explained_once_and_in_the_schema() -> None:
     for enum in enums:
         shape = SCHEMA["$defs"][named(enum)]
         assert shape["enum"] == [str(word) for word in enum]
-        explained = meanings(enum)
+        explained = documents.meanings(enum)
         assert shape["description"].split("\n") == [
-            meaning(enum),
+            documents.meaning(enum),
             *(f"{word}: {said}" for word, said in explained.items()),
         ]
         # How many readings agree needs no more; four words of one are those of another.
         left = {*map(str, enum)} - {*explained}
-        assert left == {Scope: {*Scope}, Keeping: {*Rounding}}.get(enum, set())
+        assert left == {
+            documents.Scope: {*documents.Scope},
+            documents.Keeping: {*documents.Rounding},
+        }.get(enum, set())
 
 
 def test_a_reason_stands_beside_every_null() -> None:
-    class Pair(Entry):
-        lower: OrWhy[float]
-        upper: Real
+    class Pair(documents.Entry):
+        lower: documents.OrWhy[float]
+        upper: documents.Real
 
-    class Two(Document):
+    class Two(documents.Document):
         """What nobody asks."""
 
-        pair: OrWhy[Pair]
-        other: OrWhy[Pair]
+        pair: documents.OrWhy[Pair]
+        other: documents.OrWhy[Pair]
 
-    two = Two(pair=Pair(lower=Why("none is known"), upper=np.inf), other=Why("there is one"))
+    two = Two(
+        pair=Pair(lower=documents.Why("none is known"), upper=np.inf),
+        other=documents.Why("there is one"),
+    )
     assert plain(two) == {
         "schema": "trajgap/1",
         "pair": {
@@ -131,7 +110,9 @@ def test_quantities_of_claims_are_those_of_case_files() -> None:
 
 
 def solved(*answer: Any) -> Any:
-    document = plain(SolveDocument(results=(solve_result("c", "p", "r", *answer),)))
+    document = plain(
+        documents.SolveDocument(results=(documents.solve_result("c", "p", "r", *answer),))
+    )
     assert_valid(document, "solve")
     return document["results"][0]
 
@@ -177,9 +158,7 @@ def test_a_per_joint_solution() -> None:
 
 
 NOTHING_MOVES = Limits(velocity=[1.0, 0.0])
-STILL = Problem(
-    np.array([[0.5], [0.5], [1.5]]), Limits(velocity=[2.0]), rest_to_rest(2, 5), name="x"
-)
+STILL = Problem([0.5, 0.5, 1.5], Limits(velocity=2.0), curves.rest_to_rest(2, 5), name="x")
 
 
 def answered(residual: float) -> Solution:
@@ -238,7 +217,7 @@ def checked(problem: Problem, durations: Any, half: float = 5e-4) -> Any:
     result = check_result(
         "c", "p", "r", problem.coupling, check(problem, value), judge_rounding(problem, box), value
     )
-    document = plain(CheckDocument(results=(result,)))
+    document = plain(documents.CheckDocument(results=(result,)))
     assert_valid(document, "check")
     return document["results"][0]
 
@@ -256,7 +235,7 @@ def test_a_check_that_breaks() -> None:
 
 
 LONG = {"duration_upper": [1.0, 50.0, 50.0]}
-UNBOUNDED = Problem(WAYPOINTS, Limits(velocity=[0.0, 1.0]), cubic_spline(3))
+UNBOUNDED = Problem(WAYPOINTS, Limits(velocity=[0.0, 1.0]), curves.cubic_spline(3))
 
 
 @pytest.mark.parametrize(
@@ -289,7 +268,7 @@ def test_a_check_of_long_durations(problem: Problem, wanted: Any, worst: Any) ->
 @pytest.mark.parametrize("name", published_ids())
 def test_show(name: str) -> None:
     case = load_case(name)
-    document = plain(show_document(case))
+    document = plain(documents.show_document(case))
     assert_valid(document, "show")
     assert [c["id"] for c in document["claims"]] == [c.id for c in case.claims]
     assert [r["id"] for r in document["readings"] if r["default"]] == [case.default_reading.id]
@@ -299,7 +278,9 @@ def test_show(name: str) -> None:
 
 
 def test_show_keeps_to_a_selection() -> None:
-    document = plain(show_document(load_case("irb460-pso-353"), "limit-110", "waypoints-deg"))
+    document = plain(
+        documents.show_document(load_case("irb460-pso-353"), "limit-110", "waypoints-deg")
+    )
     assert [p["id"] for p in document["problems"]] == ["limit-110"]
     assert [r["id"] for r in document["readings"]] == ["waypoints-deg"]
     ids = [c["id"] for c in document["claims"]]

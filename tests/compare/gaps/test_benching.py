@@ -48,9 +48,8 @@ TOY = Problem(WAYPOINTS, LIMITS, rest_to_rest(3, 5), 0.1, 3.0, name="toy")
 _WAYS = np.abs(np.diff(WAYPOINTS, axis=0))
 # A quintic from rest to rest peaks at 15/8 Δ/T and 10/√3 Δ/T²: Biagiotti and Melchiorri,
 # "Trajectory planning for automatic machines and robots", 2008, section 2.1.7.
-EXACT = np.maximum(15 / 8 * _WAYS / [1.7, 2.3], np.sqrt(10 / np.sqrt(3) * _WAYS / [2.9, 6.1])).max(
-    axis=1
-)
+_PEAKS = 15 / 8 * _WAYS / [1.7, 2.3], np.sqrt(10 / np.sqrt(3) * _WAYS / [2.9, 6.1])
+EXACT = np.maximum(*_PEAKS).max(axis=1)
 
 
 def row(trace: list[tuple[int, float]], evaluations: int, verdict: str | None = "pass") -> Row:
@@ -276,9 +275,8 @@ def test_what_cannot_take_part_is_refused_before_anything_runs() -> None:
 def test_an_optimiser_that_always_fails_stands_last_with_its_message() -> None:
     """Every fault by itself: test_optimizers and test_trials."""
     failing = "support.optimizers:raises"
-    found = bench(
-        TOY, [failing, "support.optimizers:exits", "random"], seeds=2, budget=40, baselines=False
-    )
+    three = [failing, "support.optimizers:exits", "random"]
+    found = bench(TOY, three, seeds=2, budget=40, baselines=False)
     result = measure_gaps(found, float(EXACT.sum()))
     (exits,) = (one.message for one in found.by_label["support.optimizers:exits"][:1])
     assert "SystemExit" in exits
@@ -319,9 +317,8 @@ def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     exact = runs.rows[0].feasible_time / EXACT.sum() - 1
     assert float(table[0]["feasible_gap_lowest"]) == pytest.approx(exact, rel=1e-9)
     assert {float(one["reference_upper"]) for one in table} == {float(EXACT.sum())}
-    wide = result.model_copy(
-        update={"optimum": result.optimum.model_copy(update={"lower": EXACT.sum() * 0.9})}
-    )
+    optimum = result.optimum.model_copy(update={"lower": EXACT.sum() * 0.9})
+    wide = result.model_copy(update={"optimum": optimum})
     write_bench([(wide, runs)], tmp_path / "wide")
     (first, *_) = csv.DictReader(io.StringIO((tmp_path / "wide" / "rows.csv").read_text("utf-8")))
     assert float(first["feasible_gap_lowest"]) == pytest.approx(exact, rel=1e-9)

@@ -14,22 +14,7 @@ from typing import Any
 
 import pytest
 from support.small_studies import HEAD, optimizers, small_trial, texts, written
-from trajgap.compare.gaps import (
-    Engine,
-    Row,
-    RowStatus,
-    Store,
-    StudySession,
-    Trial,
-    export_rows,
-    load_study,
-    on_dask,
-    on_this_machine,
-    outcomes,
-    run_study,
-    run_trial,
-    study_rows,
-)
+from trajgap.compare import gaps
 from trajgap.compare.gaps.trials import TrialOutcome
 from trajgap.problem import ProcessError
 
@@ -37,14 +22,14 @@ from trajgap.problem import ProcessError
 def test_trials_are_read_as_they_are_needed() -> None:
     read = 0
 
-    def trials() -> Iterator[Trial]:
+    def trials() -> Iterator[gaps.Trial]:
         nonlocal read
         for seed in range(100):
             read += 1
             yield small_trial(seed=seed)
 
-    with on_this_machine(2) as engine:
-        coming = outcomes(trials(), engine)
+    with gaps.on_this_machine(2) as engine:
+        coming = gaps.outcomes(trials(), engine)
         next(coming)
         assert read <= 6
         coming.close()
@@ -80,9 +65,9 @@ class KilledWorker(Exception):
 
 
 def test_a_run_at_which_workers_of_dask_die_is_reported() -> None:
-    engine = Engine(failing(KilledWorker()), lambda: 1, "far")
-    (outcome,) = outcomes([small_trial()], engine)
-    assert outcome.row.status is RowStatus.FAILED
+    engine = gaps.Engine(failing(KilledWorker()), lambda: 1, "far")
+    (outcome,) = gaps.outcomes([small_trial()], engine)
+    assert outcome.row.status is gaps.RowStatus.FAILED
     said = "support.optimizers:draws: workers died repeatedly while running it"
     assert outcome.row.message == said
 
@@ -104,14 +89,14 @@ CLOSED.shutdown()
 def test_an_engine_that_is_lost_ends_the_session(executor: Executor, said: str) -> None:
     said = said if said == "^none$" else f"far: lost {said}; finished runs are stored"
     with pytest.raises(ProcessError, match=said):
-        list(outcomes([small_trial()], Engine(executor, lambda: 1, "far")))
+        list(gaps.outcomes([small_trial()], gaps.Engine(executor, lambda: 1, "far")))
 
 
 def test_dask_that_does_not_answer_is_reported() -> None:
     pytest.importorskip("distributed")
     with (
         pytest.raises(ProcessError, match=r"dask: no scheduler answers at tcp://127.0.0.1:9 \("),
-        on_dask("tcp://127.0.0.1:9", patience=0.2),
+        gaps.on_dask("tcp://127.0.0.1:9", patience=0.2),
     ):
         pass
 
@@ -120,7 +105,7 @@ def test_dask_that_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with (
         pytest.raises(ProcessError, match=r'dask: is not installed; run `.*"trajgap\[dask\]"`'),
-        on_dask("tcp://127.0.0.1:9", patience=0.2),
+        gaps.on_dask("tcp://127.0.0.1:9", patience=0.2),
     ):
         pass
 
@@ -130,7 +115,7 @@ def test_dask_that_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch)
 def test_a_dask_cluster_gives_the_same_rows_though_a_worker_is_killed(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     trials = [small_trial("support.optimizers:dawdles", seed=seed) for seed in range(24)]
-    wanted = {trial.key: run_trial(trial) for trial in trials}
+    wanted = {trial.key: gaps.run_trial(trial) for trial in trials}
     found: dict[str, TrialOutcome] = {}
     with (
         distributed.LocalCluster(
@@ -140,11 +125,11 @@ def test_a_dask_cluster_gives_the_same_rows_though_a_worker_is_killed(tmp_path: 
             dashboard_address=None,
             local_directory=str(tmp_path),
         ) as cluster,
-        on_dask(cluster.scheduler_address) as engine,
+        gaps.on_dask(cluster.scheduler_address) as engine,
     ):
         pids = [nanny.pid for nanny in cluster.workers.values()]
         assert engine.slots() == 2
-        for outcome in outcomes(trials, engine):
+        for outcome in gaps.outcomes(trials, engine):
             found[outcome.row.key] = outcome
             if len(found) == 5:
                 os.kill(pids[0], signal.SIGKILL)
@@ -195,7 +180,7 @@ def killed_at(running: subprocess.Popen[str], rng: random.Random, most: int) -> 
 def test_a_study_survives_fifty_kills(tmp_path: Path) -> None:
     """Each killed study ends with the rows of one that was left alone; a done one begins afresh."""
     study = written(tmp_path, STUDY.replace("seeds = 4", "seeds = 20"))
-    plan = load_study(study)
+    plan = gaps.load_study(study)
     whole = tmp_path / "whole.sqlite"
     with session(study, whole) as running:
         assert running.communicate()
@@ -229,32 +214,32 @@ ROOM = 2_000_000
 """Bytes that a session may grow by: a tenth of 10,000 rows, each of some 2,000 bytes."""
 
 
-def at_once(trial: Trial) -> TrialOutcome:
+def at_once(trial: gaps.Trial) -> TrialOutcome:
     """A row as long as those of runs, without a search."""
     trace = tuple((at, 9.0 / at) for at in range(1, 60))
-    return TrialOutcome(Row.begun(trial, trace=trace, evaluations=60), 0.0)
+    return TrialOutcome(gaps.Row.begun(trial, trace=trace, evaluations=60), 0.0)
 
 
 @pytest.mark.slow  # a quick look at the same: test_engines, trials are read as they are needed
 def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
     runs = 10_000
     text = f"{HEAD}{optimizers('random')}".replace("seeds = 4", f"seeds = {runs // 2}")
-    plan = load_study(written(tmp_path, text))
+    plan = gaps.load_study(written(tmp_path, text))
     held = 0
 
-    def forget_the_start(session: StudySession) -> None:
+    def forget_the_start(session: gaps.StudySession) -> None:
         nonlocal held
         if session.run == runs // 10:
             held = tracemalloc.get_traced_memory()[0]
             tracemalloc.reset_peak()
 
-    with Store(tmp_path / "runs.sqlite") as store:
+    with gaps.Store(tmp_path / "runs.sqlite") as store:
         next(plan.trials(store))  # the optimum is solved before anything is counted
         tracemalloc.start()
         try:
-            engine = Engine(AtOnce(), lambda: 2, "here", at_once)
-            assert run_study(plan, store, engine, progress=forget_the_start).run == runs
-            assert export_rows(study_rows(plan, store), tmp_path / "rows.csv") == runs
+            engine = gaps.Engine(AtOnce(), lambda: 2, "here", at_once)
+            assert gaps.run_study(plan, store, engine, progress=forget_the_start).run == runs
+            assert gaps.export_rows(gaps.study_rows(plan, store), tmp_path / "rows.csv") == runs
             assert sum(1 for _ in store.rows()) == runs
             assert tracemalloc.get_traced_memory()[1] - held < ROOM
         finally:

@@ -8,31 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.small_studies import small_trial
+from trajgap.compare import gaps
 from trajgap.compare.blocks import brief_board
-from trajgap.compare.gaps import (
-    DESCENT,
-    LADDER,
-    SOLVED,
-    Bracket,
-    Row,
-    Summary,
-    boards,
-    leaderboard_rows,
-    leaderboard_study,
-    parse_study,
-    summaries_text,
-)
 from trajgap.compare.gaps.leaderboard import read_summaries, summary_of
 from trajgap.compare.gaps.rows import failed
 from trajgap.problem import CaseError
 from trajgap.problem.suite import list_instances
 
 
-def run(gap: float, at: int, verdict: str = "pass") -> Row:
+def run(gap: float, at: int, verdict: str = "pass") -> gaps.Row:
     """A run of 100 evaluations with an optimum of 2 s, whose best total is known from ``at`` on."""
-    trial = small_trial(reference=Bracket(2.0, 1.9), budget=100)
+    trial = small_trial(reference=gaps.Bracket(2.0, 1.9), budget=100)
     total = 2.0 * (1 + gap)
-    return Row.begun(
+    return gaps.Row.begun(
         trial,
         evaluations=100,
         reported_time=total,
@@ -43,10 +31,10 @@ def run(gap: float, at: int, verdict: str = "pass") -> Row:
 
 
 def test_a_summary_counts_what_comes_within_each_gap() -> None:
-    lost = failed(small_trial(reference=Bracket(2.0, 1.9), budget=100), "raised")
+    lost = failed(small_trial(reference=gaps.Bracket(2.0, 1.9), budget=100), "raised")
     rows = [run(0.005, 10), run(0.0005, 40), run(0.00005, 70, "fail"), lost]
     found = summary_of("mine", rows)
-    within = dict(zip(LADDER, found.within, strict=True))
+    within = dict(zip(gaps.LADDER, found.within, strict=True))
     assert (within[1.0], within[0.01], within[0.001], within[1e-4]) == (2, 2, 1, 0)
     # To 1 %: 10 + 40, and all of the other two; to 0.1 %: 100 + 40 + 200; never to 0.01 %.
     assert found.spent == (250, 340, 400)
@@ -56,11 +44,11 @@ def test_a_summary_counts_what_comes_within_each_gap() -> None:
     assert np.isinf(found.upper_quartile)  # between 0.5 % and a run without an answer
 
 
-def made(problem: str, optimizer: str, solved: int, runs: int = 10) -> Summary:
+def made(problem: str, optimizer: str, solved: int, runs: int = 10) -> gaps.Summary:
     """A summary with so many runs at the optimum, of 50 evaluations each; the others spend 100."""
-    within = (solved,) * len(LADDER)
-    spent = (50 * solved + 100 * (runs - solved),) * len(SOLVED)
-    return Summary(
+    within = (solved,) * len(gaps.LADDER)
+    spent = (50 * solved + 100 * (runs - solved),) * len(gaps.SOLVED)
+    return gaps.Summary(
         problem, optimizer, "stretch", 100, runs, 0, 0.0, 0.1 * (solved == 0), 1.0, within, spent
     )
 
@@ -72,7 +60,7 @@ def test_a_board_weighs_problems_alike_and_takes_complete_optimisers_alone() -> 
         made("a", "bad", 0), made("b", "bad", 0),
         made("a", "begun", 10),
     ]  # fmt: skip
-    (board,) = boards(rows)
+    (board,) = gaps.boards(rows)
     assert board.problems == ("a", "b")
     assert board.missing == ("begun",)
     assert [one.optimizer for one in board.standings] == ["good", "once", "bad"]
@@ -84,31 +72,31 @@ def test_a_board_weighs_problems_alike_and_takes_complete_optimisers_alone() -> 
     assert np.isinf(bad.expected[2][0])
     # Two problems are drawn: both a, both b, or one of each.
     assert good.solved[0][1:] == (0.5, 1.0)
-    (alone,) = boards([row for row in rows if row.problem == "a"])
+    (alone,) = gaps.boards([row for row in rows if row.problem == "a"])
     assert [one.optimizer for one in alone.standings[:2]] == ["good", "once"]
     assert alone.missing == ()
 
 
 def test_the_reference_takes_no_place_of_an_optimiser() -> None:
-    (board,) = boards([made("a", DESCENT, 10), made("a", "good", 5), made("a", "bad", 0)])
+    (board,) = gaps.boards([made("a", gaps.DESCENT, 10), made("a", "good", 5), made("a", "bad", 0)])
     assert [(one.optimizer, board.place(one)) for one in board.standings] == [
-        (DESCENT, None),
+        (gaps.DESCENT, None),
         ("good", 1),
         ("bad", 2),
     ]
     shown = [[cell.text for cell in row[:2]] for row in brief_board(board).rows]
     assert shown == [
-        ["–", f"{DESCENT} (reference, no black box)"], ["1", "good"], ["2", "bad"],
+        ["–", f"{gaps.DESCENT} (reference, no black box)"], ["1", "good"], ["2", "bad"],
     ]  # fmt: skip
 
 
 def test_summaries_are_read_as_they_were_written() -> None:
     rows = (made("a", "good", 3), replace(made("a, b", "none", 0), median=float("inf")))
-    assert read_summaries(summaries_text(rows)) == rows
+    assert read_summaries(gaps.summaries_text(rows)) == rows
 
 
 def test_the_study_covers_every_proven_instance_and_its_sample_is_drawn_again() -> None:
-    names = [one.name.partition("/")[0] for one in leaderboard_study().problems]
+    names = [one.name.partition("/")[0] for one in gaps.leaderboard_study().problems]
     proven = [one for one in list_instances() if one.evidence == "certified"]
     assert sorted(names) == sorted(one.name for one in proven)
     classes: dict[tuple[str, str], list[str]] = {}
@@ -118,7 +106,7 @@ def test_the_study_covers_every_proven_instance_and_its_sample_is_drawn_again() 
     rng = random.Random("leaderboard")
     drawn = {rng.choice(sorted(classes[key])) for key in sorted(classes)}
     assert set(names[: len(drawn)]) == drawn
-    committed = {one.problem.partition("/")[0] for one in leaderboard_rows()}
+    committed = {one.problem.partition("/")[0] for one in gaps.leaderboard_rows()}
     assert committed <= set(names)
 
 
@@ -127,19 +115,19 @@ HEAD = 'format = 1\nseeds = 2\n[[problems]]\ncase = "suite:353-3x1-a-1"\n'
 
 def test_several_budgets_have_runs_of_their_own() -> None:
     text = f'budget = [100, 1000]\n{HEAD}[[optimizers]]\nname = "random"\nlabel = "draws"\n'
-    plan = parse_study(text, "few.toml", Path())
+    plan = gaps.parse_study(text, "few.toml", Path())
     assert [trial.budget for trial in plan.trials()] == [100, 100, 1000, 1000]
     assert len(plan) == 4
     assert [label for label, _ in plan.groups()] == ["draws", "draws"]
     with pytest.raises(CaseError, match="named twice"):
-        parse_study(text.replace("1000", "100"), "few.toml", Path())
+        gaps.parse_study(text.replace("1000", "100"), "few.toml", Path())
 
 
 def test_missing_packages_are_left_out_if_the_file_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cma", None)
     text = HEAD + '[[optimizers]]\nname = "random"\n[[optimizers]]\nname = "cma"\n'
     with pytest.raises(CaseError, match="pip install cma"):
-        parse_study(text, "few.toml", Path())
-    plan = parse_study(f"installed_only = true\n{text}", "few.toml", Path())
+        gaps.parse_study(text, "few.toml", Path())
+    plan = gaps.parse_study(f"installed_only = true\n{text}", "few.toml", Path())
     assert [trial.optimizer for trial in plan.trials()] == ["random"] * 2
     assert "cma" in plan.notes[-1]

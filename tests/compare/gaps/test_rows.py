@@ -363,9 +363,8 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
         assert dots[0][0] == 1
         assert dots[-1][0] == row.evaluations
         assert [p for p in dots if p in row.trace] == list(row.trace)
-        assert all(
-            y == sys.float_info.max for at, y in dots if not row.trace or at < row.trace[0][0]
-        )
+        first = row.trace[0][0] if row.trace else math.inf
+        assert all(y == sys.float_info.max for at, y in dots if at < first)
 
 
 @pytest.mark.parametrize(

@@ -69,10 +69,8 @@ def test_a_doi_is_a_link_only_if_it_is_one() -> None:
 
 
 def test_every_link_leads_somewhere(folder: Path) -> None:
-    pages = {
-        name: Tree((folder / f"{name}.html").read_text("utf-8"))
-        for name in ("index", "glossary", ID)
-    }
+    names = ("index", "glossary", ID)
+    pages = {name: Tree((folder / f"{name}.html").read_text("utf-8")) for name in names}
     ids = {name: [a["id"] for a in seen.found if a.get("id")] for name, seen in pages.items()}
     for name, seen in pages.items():
         assert len(ids[name]) == len(set(ids[name]))

@@ -33,13 +33,8 @@ JOINTS = ("shoulder", "wrist")
 
 @pytest.fixture(scope="module")
 def stretched() -> Problem:
-    return Problem(
-        WAYPOINTS,
-        Limits([9.0, 9.0], [90.0, 90.0]),
-        uniform_cubic_b_spline(5, "stretched"),
-        0.0,
-        joints=JOINTS,
-    )
+    curve = uniform_cubic_b_spline(5, "stretched")
+    return Problem(WAYPOINTS, Limits(9.0, 90.0), curve, joints=JOINTS)
 
 
 @pytest.fixture(scope="module")

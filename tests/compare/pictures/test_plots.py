@@ -33,12 +33,7 @@ def test_every_picture_is_sound(pictures: dict[str, Picture], name: str) -> None
 
 def test_a_picture_does_not_depend_on_users_settings_or_earlier_pictures(problem: Problem) -> None:
     plain = svg(motion_picture(problem, DURATIONS, title="Motion"))
-    settings = {
-        "font.size": 20,
-        "font.family": ["serif"],
-        "lines.linewidth": 9,
-        "svg.hashsalt": "b",
-    }
+    settings = {"font.size": 20, "font.family": "serif", "lines.linewidth": 9, "svg.hashsalt": "b"}
     with matplotlib.rc_context(settings):
         svg(motion_picture(problem, 2 * DURATIONS, title="Another"))
         assert svg(motion_picture(problem, DURATIONS, title="Motion")) == plain

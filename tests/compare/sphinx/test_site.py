@@ -7,7 +7,7 @@ import runpy
 import shutil
 import warnings
 from collections import Counter
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -25,10 +25,8 @@ from trajgap.problem.suite import list_instances
 SITE = ROOT / "docs"
 RESULTS = Results(SITE / "results")
 ROLE = re.compile(r"\{trajgap\}`([^`|\s]+)(?:\|([^`]+))?`")
-PROSE = [
-    ROOT / "README.md",
-    *sorted(path for path in SITE.rglob("*.md") if "generated" not in path.parts),
-]
+PAGES = sorted(path for path in SITE.rglob("*.md") if "generated" not in path.parts)
+PROSE = [ROOT / "README.md", *PAGES]
 """Every page but those that the build makes."""
 FIGURE = re.compile(r"(?<![\w.])\d+(?:\.\d+)?\s?%|(?<![\w.])\d+\.\d+(?:e-?\d+)?(?:\s?m?s\b)?")
 """A percentage, or a number with decimals; whole numbers count things on the page itself."""
@@ -108,10 +106,8 @@ def explained(document, figure, said):
     """Whether a figure without a key stands where its reason says."""
     kind, _, place = said.partition(": ")
     if kind == "table":
-        return (
-            digits(figure) in program("tables").markdown(place)
-            and f"<!-- csv: {place} -->" in document
-        )
+        shown = f"<!-- csv: {place} -->" in document
+        return shown and digits(figure) in program("tables").markdown(place)
     if kind == "test":  # reads the page, or says why the value is so
         path = ROOT / place
         return place.startswith("tests/") and path.exists()
@@ -240,9 +236,8 @@ def foreign(folder, text=FOREIGN, alter=None, builder="html"):
     (shipped,) = (ROOT / "nlp/certificates").glob("irb460*limit-80*rad.json")
     proof = shipped.read_text("utf-8")
     (folder / "proof.json").write_text(alter(proof) if alter else proof, "utf-8")
-    (folder / "conf.py").write_text(
-        'extensions = ["myst_parser", "trajgap.compare.sphinx"]\n', "utf-8"
-    )
+    extensions = ["myst_parser", "trajgap.compare.sphinx"]
+    (folder / "conf.py").write_text(f"extensions = {extensions}\n", "utf-8")
     (folder / "index.md").write_text(text, "utf-8")
     said = io.StringIO()
     with warnings.catch_warnings(), patch_docutils(str(folder)), docutils_namespace():
@@ -297,9 +292,8 @@ def test_a_waterfall_is_a_table_where_no_picture_can_be(tmp_path):
 def test_a_page_that_lies_is_told(tmp_path):
     """Other wrong keys and words: the tests of what raises; here, that `sphinx -W` would fail."""
     text = "# T\n\n```{trajgap-certificate} proof.json\n```\n"
-    said, _ = foreign(
-        tmp_path / "thesis", text, lambda one: re.sub(r'("lower":\s*")(\d+)', r"\g<1>9\2", one)
-    )
+    lie = partial(re.sub, r'("lower":\s*")(\d+)', r"\g<1>9\2")
+    said, _ = foreign(tmp_path / "thesis", text, lie)
     assert "ERROR: " in said
     assert "not proved" in said
 
@@ -362,10 +356,8 @@ def test_a_gallery_shows_each_picture_once(tmp_path):
     pytest.importorskip("sphinx_gallery")
     scatter = tent_scatter(members=5, dimensions=2, bounds=(0.0, 1.0), beta=0.5)
     names = {"___": tent_picture(scatter, unit="s", title="T"), "other": 1}
-    block = {
-        "example_globals": names,
-        "image_path_iterator": iter([str(tmp_path / "one.png"), str(tmp_path / "two.png")]),
-    }
+    paths = iter([str(tmp_path / name) for name in ("one.png", "two.png")])
+    block = {"example_globals": names, "image_path_iterator": paths}
     page = scrape_pictures((), block, {"src_dir": str(tmp_path)})
     assert "one.svg" in page
     assert "In double precision" in page

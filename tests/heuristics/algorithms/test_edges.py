@@ -8,18 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from scipy.stats import mannwhitneyu, qmc
-from trajgap.heuristics import (
-    PSO,
-    WOA,
-    Bounds,
-    ConstrainedPSO,
-    DeathPenalty,
-    ImprovedGA,
-    ImprovedWOA,
-    run,
-    states,
-    tent_collapse,
-)
+from trajgap import heuristics
 from trajgap.heuristics.algorithms import TentRule, tent_population
 from trajgap.heuristics.algorithms.genes import FitnessRule, fitness_values, roulette
 from trajgap.heuristics.algorithms.improved_ga import (
@@ -88,7 +77,7 @@ def test_the_arcsine_has_no_value_for_negative_fitness() -> None:
 
 
 def test_rates_of_a_population() -> None:
-    record = ImprovedGA()
+    record = heuristics.ImprovedGA()
     # f_ave/f_max = 1/2: arcsin 1/2 is a third of π/2.
     assert record.rates(np.array([0.25, 0.5, 0.0, 0.25])) == pytest.approx((2 / 3, 0.05 / 3))
     # Nothing feasible: all alike, no crossover, most mutation.
@@ -102,23 +91,24 @@ def bowl(x: np.ndarray, shift: float) -> np.ndarray:
     return ((x - shift) ** 2).sum(axis=-1)
 
 
-def finals(record: WOA | PSO, shift: float, seeds: int = 12) -> np.ndarray:
+def finals(record: heuristics.WOA | heuristics.PSO, shift: float, seeds: int = 12) -> np.ndarray:
     """Final values on a sphere; the box is shifted together with its centre."""
     low, high = shift - 5.0, shift + 5.0
     record = replace(record, position_initial=(low, high), iterations=150)
-    box = Bounds(np.full(5, low), np.full(5, high))
+    box = heuristics.Bounds(np.full(5, low), np.full(5, high))
     found = []
     for seed in range(seeds):
-        *_, last = states(record, lambda x: bowl(x, shift), box, np.random.default_rng(seed))
+        rng = np.random.default_rng(seed)
+        *_, last = heuristics.states(record, lambda x: bowl(x, shift), box, rng)
         found.append(last.best_fitness)
     return np.array(found)
 
 
 def test_what_woa_finds_depends_on_where_zero_is() -> None:
     """The same question, shifted by 3: WOA loses more than ten digits, PSO none."""
-    assert finals(WOA(), 0.0).max() < 1e-15
-    assert finals(WOA(), 3.0).min() > 1e-4
-    pso = PSO(velocity_initial=(-2.0, 2.0))
+    assert finals(heuristics.WOA(), 0.0).max() < 1e-15
+    assert finals(heuristics.WOA(), 3.0).min() > 1e-4
+    pso = heuristics.PSO(velocity_initial=(-2.0, 2.0))
     ratio = np.median(finals(pso, 3.0)) / np.median(finals(pso, 0.0))
     assert 0.1 < ratio < 10
 
@@ -148,11 +138,9 @@ def test_against_mealpy(shift: float) -> None:
         "obj_func": lambda x: float(bowl(x, shift)),
         "log_to": None,
     }
-    theirs = [
-        Member(epoch=150, pop_size=30).solve(question, seed=seed).target.fitness
-        for seed in range(40)
-    ]
-    record = WOA(replacement="greedy", r_rule="shared", counter="one")
+    member = Member(epoch=150, pop_size=30)
+    theirs = [member.solve(question, seed=seed).target.fitness for seed in range(40)]
+    record = heuristics.WOA(replacement="greedy", r_rule="shared", counter="one")
     assert mannwhitneyu(finals(record, shift, 40), theirs).pvalue > 0.01
 
 
@@ -168,7 +156,7 @@ def weighted(best: Array, s: float) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("s", [0.0, 5.0, -0.5])
 def test_a_weighted_best_breaks_the_limits_from_the_second_move_on(s: float) -> None:
-    best = run(WOA(), SIX_JOINTS, 1, 50, objective="stretch").durations
+    best = heuristics.run(heuristics.WOA(), SIX_JOINTS, 1, 50, objective="stretch").durations
     weights, stretches = weighted(best, s)
     assert np.flatnonzero(stretches > 1 + 1e-9)[0] == 1
     assert weights[0] == 1.0
@@ -179,7 +167,7 @@ def test_a_weighted_best_breaks_the_limits_from_the_second_move_on(s: float) -> 
 
 
 def test_a_best_with_room_to_spare_breaks_them_later() -> None:
-    best = 1.25 * run(WOA(), SIX_JOINTS, 1, 50, objective="stretch").durations
+    best = 1.25 * heuristics.run(heuristics.WOA(), SIX_JOINTS, 1, 50, objective="stretch").durations
     _, stretches = weighted(best, 0.0)
     # w = 0.8 at I = 100 is just enough, w = 0.798 is not.
     assert np.flatnonzero(stretches > 1 + 1e-9)[0] == 101
@@ -187,22 +175,24 @@ def test_a_best_with_room_to_spare_breaks_them_later() -> None:
 
 def judged(algorithm: Any) -> Array:
     """Every position that a search of seed 0 had judged."""
-    judge, seen = DeathPenalty(SIX_JOINTS, algorithm.penalty), []
+    judge, seen = heuristics.DeathPenalty(SIX_JOINTS, algorithm.penalty), []
 
     def seeing(positions: Array) -> Array:
         seen.append(positions)
         return judge(positions)
 
-    bounds = Bounds.of(SIX_JOINTS)
-    for _ in states(algorithm, seeing, bounds, np.random.Generator(np.random.PCG64(0))):
+    bounds = heuristics.Bounds.of(SIX_JOINTS)
+    for _ in heuristics.states(algorithm, seeing, bounds, np.random.Generator(np.random.PCG64(0))):
         pass
     return np.concatenate(seen)
 
 
 @pytest.mark.parametrize(
-    "algorithm", [WOA(iterations=100), ImprovedWOA(iterations=100)], ids=lambda a: a.kind
+    "algorithm",
+    [heuristics.WOA(iterations=100), heuristics.ImprovedWOA(iterations=100)],
+    ids=lambda a: a.kind,
 )
-def test_whales_are_set_to_zero_seconds(algorithm: WOA) -> None:
+def test_whales_are_set_to_zero_seconds(algorithm: heuristics.WOA) -> None:
     """The printed bounds [0, 5] s contain 0; whales that leave them are judged there."""
     positions = judged(algorithm)
     assert len(positions) == 30 * 101
@@ -212,7 +202,7 @@ def test_whales_are_set_to_zero_seconds(algorithm: WOA) -> None:
 
 def test_negative_durations_inside_the_palletisers_bounds() -> None:
     """[-x_max, x_max] of irb460, of which all but 2⁻⁷ has a negative duration."""
-    negative = (judged(ConstrainedPSO(iterations=20)) < 0.0).any(axis=1)
+    negative = (judged(heuristics.ConstrainedPSO(iterations=20)) < 0.0).any(axis=1)
     assert negative.mean() > 0.1
 
 
@@ -235,7 +225,7 @@ def test_every_random_start_ends_on_zero_within_54_steps(k: int) -> None:
 
 @pytest.mark.parametrize("start", ["0.37", "0.1", "0.3141", "0.9"])
 def test_the_exact_orbit_of_a_decimal_never_ends(start: str) -> None:
-    found = tent_collapse(start, 600)
+    found = heuristics.tent_collapse(start, 600)
     assert found.zero_at is not None
     assert 50 <= found.zero_at <= 57
     assert (found.doubles[found.zero_at :] == 0).all()
@@ -249,13 +239,13 @@ def test_the_exact_orbit_of_a_decimal_never_ends(start: str) -> None:
 
 
 def test_a_beta_away_from_one_half_does_not_end() -> None:
-    found = tent_collapse("0.37", 2000, Fraction("0.49"))
+    found = heuristics.tent_collapse("0.37", 2000, Fraction("0.49"))
     assert found.zero_at is None
     assert found.exact_zero_at is None
 
 
 def test_a_dyadic_start_ends_exactly_too() -> None:
-    found = tent_collapse("0.375", 10)
+    found = heuristics.tent_collapse("0.375", 10)
     assert found.zero_at == found.exact_zero_at == 4
 
 
@@ -268,7 +258,7 @@ def test_a_dyadic_start_ends_exactly_too() -> None:
 )
 def test_out_of_range(start: str, beta: Fraction, message: str) -> None:
     with pytest.raises(TrajgapError, match=message):
-        tent_collapse(start, 5, beta)
+        heuristics.tent_collapse(start, 5, beta)
 
 
 def test_the_experiment_of_figure_1() -> None:
@@ -289,11 +279,11 @@ def test_the_experiment_of_figure_1() -> None:
 def test_one_orbit_through_everything_leaves_most_whales_at_zero(rule: str, at_zero: int) -> None:
     """30 whales of 7 durations: 210 numbers, of which the last 155 or more are exactly 0 s."""
     for seed in range(20):
-        record = ImprovedWOA(tent_rule=rule)
+        record = heuristics.ImprovedWOA(tent_rule=rule)
         positions = record.scatter(np.random.default_rng(seed), 7)
         zero = (positions == 0.0).all(axis=1)
         assert at_zero <= zero.sum() <= at_zero + (1 if at_zero else 0)
         way = np.random.default_rng(seed).uniform(-1, 1, (8, 2))
         problem = Problem(way, Limits(50.0, joints=2), quintic_spline(7), 0.0, 5.0)
-        fitness = DeathPenalty(problem)(positions)
+        fitness = heuristics.DeathPenalty(problem)(positions)
         assert np.isinf(fitness[zero]).all()

@@ -112,9 +112,8 @@ def swarm(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, Any]:
         v = (low + (high - low) * rng.random((record.particles, 3))).tolist()
         fits = [judge(one) for one in x]
         first = {"positions": x, "velocities": v, "fitness": fits}
-        return led(
-            record, rng, judge, {**first, "personal": x, "personal_fitness": fits}, x[0], INF
-        )
+        first |= {"personal": x, "personal_fitness": fits}
+        return led(record, rng, judge, first, x[0], INF)
     count = record.particles
     rows, columns = {"coordinate": (count, 3), "particle": (count, 1), "iteration": (1, 1)}[
         record.draws

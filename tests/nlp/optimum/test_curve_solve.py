@@ -8,15 +8,8 @@ import pytest
 from support.b_splines import clamped, uniform
 from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Limits,
-    Verdict,
-    check,
-    evaluate,
-    load_case,
-    quintic_spline,
-    solve_in_closed_form,
-)
+from trajgap.problem import Limits, Verdict, check, curves, evaluate, load_case
+from trajgap.problem.curves import solve_in_closed_form
 
 POLISH = "irb1600-ga-cubic-bspline"
 BEST = {
@@ -117,9 +110,8 @@ def test_bounds_positions_and_impossible_limits(time: str) -> None:
     short = solve(replace(problem, duration_upper=0.02))
     assert short.status is Status.INFEASIBLE
     wide = Limits(*problem.limits.derivatives.T, -20.0, 20.0)
-    assert solve(replace(problem, limits=wide), starts=2).total_time == pytest.approx(
-        free.total_time, rel=1e-8
-    )
+    found = solve(replace(problem, limits=wide), starts=2)
+    assert found.total_time == pytest.approx(free.total_time, rel=1e-8)
 
 
 def test_each_joint_by_itself() -> None:
@@ -135,7 +127,7 @@ def test_each_joint_by_itself() -> None:
 def test_a_b_spline_with_knots_at_the_way_points_is_solved_as_a_polynomial_spline() -> None:
     problem, _ = clamped((5, "waypoints", "times", "timed"), count=5)
     solution = solve(problem)
-    spline = solve(replace(problem, curve=quintic_spline(4)))
+    spline = solve(replace(problem, curve=curves.quintic_spline(4)))
     assert solution.status is spline.status is Status.CONVERGED
     assert solution.problem is problem
     assert solution.check.peaks == check(problem, solution.durations).peaks

@@ -7,24 +7,12 @@ import pytest
 from support.uneven import CURVES as UNEVEN
 from trajgap.nlp import Evidence, Status, solve_per_joint
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Coupling,
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Coupling, Limits, Problem, TrajgapError, Verdict, check, curves
 
 Q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
 LIMITS = Limits([1.5, 2.0], [4.0, 3.0], [30.0, 12.0])
 RATIOS = np.array([1.0, 1.7, 0.6])
-CURVES = [*(curve() for curve in UNEVEN.values()), uniform_cubic_b_spline(4, "timed")]
+CURVES = [*(curve() for curve in UNEVEN.values()), curves.uniform_cubic_b_spline(4, "timed")]
 EVERY = pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
 
 
@@ -56,7 +44,7 @@ def test_the_free_optimum_is_at_most_as_long_and_is_met_at_its_own_ratios(curve)
 
 
 def test_one_segment_has_one_ratio() -> None:
-    problem = Problem(Q[:2], LIMITS, rest_to_rest(1, 5))
+    problem = Problem(Q[:2], LIMITS, curves.rest_to_rest(1, 5))
     fixed = shortest(replace(problem, ratios="equal"))
     assert fixed == pytest.approx(solve(problem).total_time, rel=1e-9)
     assert fixed == pytest.approx(shortest(replace(problem, ratios=[7.3])), rel=1e-12)
@@ -64,7 +52,7 @@ def test_one_segment_has_one_ratio() -> None:
 
 @pytest.mark.parametrize("ratios", ["equal", "chord", RATIOS])
 def test_joints_by_themselves_give_the_same_total(ratios) -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), coupling=Coupling.PER_JOINT, ratios=ratios)
+    problem = Problem(Q, LIMITS, curves.cubic_spline(3), coupling=Coupling.PER_JOINT, ratios=ratios)
     answer = solve_per_joint(problem, slacks=(0.01,))
     own = shortest(problem)
     assert answer.total_time == pytest.approx(own, rel=1e-12)
@@ -75,7 +63,7 @@ def test_joints_by_themselves_give_the_same_total(ratios) -> None:
 
 def test_a_path_that_leaves_its_range_is_not_mended_by_time() -> None:
     limits = replace(LIMITS, position_upper=[1.31, 1.1])
-    problem = Problem(Q, limits, cubic_spline(3), ratios=RATIOS)
+    problem = Problem(Q, limits, curves.cubic_spline(3), ratios=RATIOS)
     answer = solve(problem)
     assert answer.status is Status.INFEASIBLE
     assert "at these ratios joint 2 reaches" in str(answer.why)
@@ -87,7 +75,7 @@ def test_a_path_that_leaves_its_range_is_not_mended_by_time() -> None:
 
 
 def test_bounds_on_durations_may_leave_no_total() -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
+    problem = Problem(Q, LIMITS, curves.cubic_spline(3), ratios=RATIOS)
     own = shortest(problem)
     short = replace(problem, duration_upper=0.99 * own * problem.shares)
     assert solve(short).status is Status.INFEASIBLE
@@ -98,16 +86,16 @@ def test_bounds_on_durations_may_leave_no_total() -> None:
 
 
 def test_a_joint_that_may_not_move() -> None:
-    answer = solve(Problem(Q, Limits([1.0, 0.0]), cubic_spline(3), ratios="equal"))
+    answer = solve(Problem(Q, Limits([1.0, 0.0]), curves.cubic_spline(3), ratios="equal"))
     assert answer.status is Status.INFEASIBLE
     assert answer.why == "joint 2 moves, though its velocity limit is 0"
     still = Q.copy()
     still[:, 1] = 0.5
-    assert shortest(Problem(still, Limits([1.0, 0.0]), cubic_spline(3), ratios="equal")) > 0
+    assert shortest(Problem(still, Limits([1.0, 0.0]), curves.cubic_spline(3), ratios="equal")) > 0
 
 
 def test_a_jump_at_the_ratios_is_named() -> None:
-    bent = Problem([[0.0], [0.5], [1.5]], Limits(1.0, 1.0), piecewise((1, 1), 0, ()))
+    bent = Problem([[0.0], [0.5], [1.5]], Limits(1.0, 1.0), curves.piecewise((1, 1), 0, ()))
     answer = solve(replace(bent, ratios="equal"))
     assert answer.status is Status.NONE_FOUND
     assert answer.why == "at these ratios the velocity of joint 1 jumps, whatever the total"
@@ -117,8 +105,8 @@ def test_a_jump_at_the_ratios_is_named() -> None:
 @pytest.mark.parametrize(
     ("curve", "said"),
     [
-        (piecewise((5, 5, 5)), "coefficients per joint free"),
-        (piecewise((3, 3, 3), 2, ((1, 0.1),)), "prescribes derivatives other than 0"),
+        (curves.piecewise((5, 5, 5)), "coefficients per joint free"),
+        (curves.piecewise((3, 3, 3), 2, ((1, 0.1),)), "prescribes derivatives other than 0"),
     ],
 )
 def test_no_formula_is_one_line(curve, said: str) -> None:
@@ -130,5 +118,5 @@ def test_no_formula_is_one_line(curve, said: str) -> None:
 def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:
     close = Q.copy()
     close[1] = close[0] + 1e-7
-    answer = solve(Problem(close, LIMITS, quintic_spline(3), ratios="chord"))
+    answer = solve(Problem(close, LIMITS, curves.quintic_spline(3), ratios="chord"))
     assert answer.check.verdict is Verdict.PASS

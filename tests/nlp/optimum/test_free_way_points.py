@@ -6,16 +6,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.optimize import minimize
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Limits,
-    Problem,
-    Verdict,
-    check,
-    cubic_spline,
-    fit,
-    quintic_spline,
-    quintic_spline_virtual,
-)
+from trajgap.problem import Limits, Problem, Verdict, check, curves, fit
 
 Q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
 LIMITS = Limits([1.1, 1.7], [3.0, 2.2], [20.0, 15.0])
@@ -60,9 +51,8 @@ def by_scipy(problem: Problem, ranges: bool) -> float:
 
 @pytest.mark.parametrize("virtual", [(2,), (2, 3)])
 def test_the_optimum_agrees_with_slsqp(virtual: tuple[int, ...]) -> None:
-    asked = Problem(
-        Q, LIMITS, quintic_spline(3 + len(virtual), virtual=virtual), duration_lower=0.2
-    )
+    curve = curves.quintic_spline(3 + len(virtual), virtual=virtual)
+    asked = Problem(Q, LIMITS, curve, duration_lower=0.2)
     solution = solve(asked)
     assert solution.status is Status.CONVERGED
     assert solution.nodal.shape == (len(virtual), 2)
@@ -70,12 +60,12 @@ def test_the_optimum_agrees_with_slsqp(virtual: tuple[int, ...]) -> None:
     # Held at samples alone, limits allow a little more.
     assert theirs * (1 - 1e-6) <= solution.total_time <= theirs * (1 + 1e-3)
     # A way-point that may lie anywhere costs nothing: it may lie where the spline goes anyway.
-    settled = solve(Problem(Q, LIMITS, quintic_spline(3), duration_lower=0.2))
+    settled = solve(Problem(Q, LIMITS, curves.quintic_spline(3), duration_lower=0.2))
     assert solution.total_time < settled.total_time + 0.2 * len(virtual)
 
 
 def test_position_limits_hold_for_virtual_breaks_and_between() -> None:
-    curve = quintic_spline(5, virtual=(1, 3))
+    curve = curves.quintic_spline(5, virtual=(1, 3))
     wide = Problem(Q, LIMITS, curve, duration_lower=0.2)
     tight = Problem(Q, LIMITS.with_positions(LOW, HIGH), curve, duration_lower=0.2)
     free, held = solve(wide), solve(tight)
@@ -94,7 +84,7 @@ def test_position_limits_hold_for_virtual_breaks_and_between() -> None:
 
 
 def test_a_virtual_break_out_of_range_is_a_violated_position() -> None:
-    curve = cubic_spline(4, ((1, 0.0), (2, 0.0)), virtual=(1, 2, 3))
+    curve = curves.cubic_spline(4, ((1, 0.0), (2, 0.0)), virtual=(1, 2, 3))
     assert curve.free == 1
     problem = Problem(Q[:2], LIMITS.with_positions(-1.5, 1.5), curve)
     found = check(problem, [2.0, 2.0, 2.0, 2.0], [[1.9, 0.0]])
@@ -105,7 +95,7 @@ def test_a_virtual_break_out_of_range_is_a_violated_position() -> None:
 
 def test_a_segment_at_a_virtual_break_that_shrinks_is_no_optimum() -> None:
     """Jerk is limited and snap is not: both ends may shrink until float64 loses the curve."""
-    curve = quintic_spline_virtual(3)
+    curve = curves.quintic_spline_virtual(3)
     solution = solve(Problem(Q[:3, :1], Limits(1.1, 3.0, 20.0), curve), starts=2)
     assert solution.found
     assert solution.check.verdict is Verdict.PASS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from support.benchmarks import loaded
-from support.case_texts import case_text
+from support.made_up import paper, row, sentence
 from support.near_problems import NEAR
 from support.two_joints import TURNING
 from trajgap.compare import audit
@@ -15,45 +15,14 @@ from trajgap.nlp.optimum import feasibility, solve
 from trajgap.nlp.optimum.descent import descend, least_point, restored
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.starts import LogBox, box_above, least_durations, slowed
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    fit,
-    parse_case,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
-)
-
-CLAIMS = """
-[[claims]]
-id = "keeps"
-quantity = "durations"
-where = "T"
-durations = ["0.64009", "0.00000125908"]
-[[claims]]
-id = "shortest"
-quantity = "statement"
-where = "T"
-checks = "optimal"
-of = ["keeps"]
-"""
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curves, fit, parse_case
 
 
 def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
-    text = case_text(
-        "joint_rows = [[0.656747, 0.147626, 0.147625]]",
-        'family = "cubic-spline"\nend_orders = [2]',
-        joints="1",
-        unit="rad",
-        limits="velocity = 0.796\nacceleration = 2.0",
-        more=CLAIMS,
-    )
+    parts = row("keeps", "0.64009 0.00000125908"), sentence("shortest", "optimal", "keeps")
+    curve = {"family": "cubic-spline", "end_orders": [2]}
+    points = [[0.656747, 0.147626, 0.147625]]
+    text = paper(points, *parts, curve=curve, velocity=0.796, acceleration=2.0)
     report = audit(parse_case(text, "near.toml"), seeds=2, certify_seconds=0)
     study = report.cases[0].study
     optimum = study.optimum(study.pairs[0])
@@ -93,7 +62,7 @@ def test_known_motions_of_each_joint_and_of_free_curves() -> None:
         problem, slacks=(), solver=lambda one: solve(one, known=known.get(one.joints[0]))
     )
     assert answer.joints[1].best <= own.best * (1 + 1e-9)
-    free = replace(problem.joint(0), curve=piecewise((5, 5, 5), 2))
+    free = replace(problem.joint(0), curve=curves.piecewise((5, 5, 5), 2))
     best = solve(free)
     kept = solve(free, initial=[[9.0, 9.0, 9.0]], known=best.durations, known_nodal=[best.nodal])
     assert kept.best <= best.best * (1 + 1e-9)
@@ -107,7 +76,7 @@ def test_a_known_motion_far_above_a_proved_bound_ends_no_search() -> None:
 
 
 def test_free_derivatives_of_a_slower_motion_are_those_of_the_same_way() -> None:
-    problem = Problem([[0.0], [1.0], [-0.5], [0.3]], Limits(1.0, 2.0), piecewise((5, 5, 5), 2))
+    problem = Problem([0.0, 1.0, -0.5, 0.3], Limits(1.0, 2.0), curves.piecewise((5, 5, 5), 2))
     rng = np.random.default_rng(2)
     h, nodal = rng.uniform(0.5, 2.0, 3), rng.normal(size=(problem.curve.free, 1))
     quick = fit(problem.curve, problem.waypoints, h, nodal)
@@ -118,7 +87,7 @@ def test_free_derivatives_of_a_slower_motion_are_those_of_the_same_way() -> None
 
 def test_least_durations_are_ways_over_the_speed_in_their_direction() -> None:
     line, limits = [[0.0], [1.0], [-1.0]], Limits(velocity=[[-0.5, 2.0]])
-    found = least_durations(Problem(line, limits, cubic_spline(2)))
+    found = least_durations(Problem(line, limits, curves.cubic_spline(2)))
     assert found == pytest.approx([0.5, 4.0], rel=1e-5)
 
 
@@ -136,10 +105,7 @@ def test_known_motions_of_a_wrong_shape_are_refused() -> None:
         ({"limits": Limits([1.0, 2.0], [3.0, 0.0])}, "joint 2 moves, but its acceleration limit"),
         ({"duration_upper": 0.2}, "needs at least"),
         ({"limits": Limits([[-0.5, 1.0], [-2, 1.1]]), "duration_upper": 0.1}, "velocity limit"),
-        (
-            {"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0, joints=2)},
-            "way-point 4 of joint 1 lies outside",
-        ),
+        ({"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0)}, "way-point 4 of joint 1 lies outside"),
         (
             {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [0.6, 9.0, 9.0]},
             "joint 2 needs at least 0.730296 s from rest to way-point 2 at its acceleration",
@@ -156,12 +122,12 @@ def test_known_motions_of_a_wrong_shape_are_refused() -> None:
             {
                 "limits": Limits(acceleration=[3.0, 1.5], joints=2),
                 "duration_upper": [2.0, 0.3, 0.3],
-                "curve": cubic_spline(3, ends=((2, 0.0),)),
+                "curve": curves.cubic_spline(3, ends=((2, 0.0),)),
             },
             "needs an acceleration of",
         ),
         (
-            {"curve": rest_to_rest(3, 5), "duration_upper": [0.9, 2.0, 2.0]},
+            {"curve": curves.rest_to_rest(3, 5), "duration_upper": [0.9, 2.0, 2.0]},
             "in segment 1 even at the longest durations",
         ),
     ],
@@ -182,7 +148,12 @@ def test_infeasible_is_said_with_a_proof(change: dict[str, object], reason: str)
 def test_elementary_proofs_never_speak_of_feasible_problems(seed: int) -> None:
     """Bounds that just hold a motion that passes are never called infeasible."""
     generator = np.random.default_rng(seed)
-    curve = (cubic_spline(4), quintic_spline(4), rest_to_rest(4, 5), three_five_three())[seed % 4]
+    curve = (
+        curves.cubic_spline(4),
+        curves.quintic_spline(4),
+        curves.rest_to_rest(4, 5),
+        curves.three_five_three(),
+    )[seed % 4]
     q = generator.normal(size=(curve.segments + 1, 2))
     problem = Problem(q, Limits(1.0, 2.0, 9.0, joints=2), curve)
     h = np.exp(generator.normal(size=curve.segments))
@@ -195,7 +166,7 @@ def test_elementary_proofs_never_speak_of_feasible_problems(seed: int) -> None:
 def test_nothing_found_is_a_word_of_its_own_with_the_least_excess() -> None:
     generator = np.random.default_rng(2)
     q = generator.normal(size=(4, 3))
-    problem = Problem(q, Limits(1.0, 1.0, joints=3), quintic_spline(3))
+    problem = Problem(q, Limits(1.0, 1.0, joints=3), curves.quintic_spline(3))
     base = solve(problem)
     tight = replace(problem, duration_upper=0.97 * base.durations)
     solution = solve(tight)
@@ -252,7 +223,7 @@ def bent_valley() -> Problem:
     """Two way-points lie 6.5e-5 apart on a joint that moves by 117."""
     q = [125.1124355452457, 49.701619091550135, 8.531303616907653, 8.531368997670285, 69.5356475468]
     limits = Limits(29297.233383318053, np.inf, 2.2881404609094945e08, 2.577467, 126.093, joints=1)
-    return Problem(np.array(q), limits, quintic_spline(4))
+    return Problem(np.array(q), limits, curves.quintic_spline(4))
 
 
 def test_a_descent_goes_on_along_a_bent_valley_with_a_new_hessian() -> None:

@@ -19,15 +19,9 @@ from trajgap.problem import (
     Problem,
     Verdict,
     check,
-    cubic_spline,
+    curves,
     load_case,
-    piecewise,
     published_ids,
-    quintic_spline,
-    rest_to_rest,
-    septic_spline,
-    three_five_three,
-    uniform_cubic_b_spline,
 )
 from trajgap.problem.suite import list_instances, load_instance
 
@@ -35,16 +29,18 @@ Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.
 LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
 USUAL = {name: curve() for name, curve in UNEVEN.items() if name != "stretched"}
 MOVING = {
-    "cubic": cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.4)),)),
-    "velocity, then acceleration": cubic_spline(3, ((1, (0.5, -0.2)),), ((2, (0.0, 1.5)),)),
-    "quintic": quintic_spline(3, ((1, (0.5, -0.2)), (2, 0.3)), ((1, (-0.3, 0.4)), (2, 0.0))),
-    "4-3-4": piecewise((4, 3, 4), 2, ((1, (0.5, -0.2)), (2, 0.0)), None, ((1, 0.1), (2, 0.0))),
+    "cubic": curves.cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.4)),)),
+    "velocity, then acceleration": curves.cubic_spline(3, ((1, (0.5, -0.2)),), ((2, (0.0, 1.5)),)),
+    "quintic": curves.quintic_spline(3, ((1, (0.5, -0.2)), (2, 0.3)), ((1, (-0.3, 0.4)), (2, 0.0))),
+    "4-3-4": curves.piecewise(
+        (4, 3, 4), 2, ((1, (0.5, -0.2)), (2, 0.0)), None, ((1, 0.1), (2, 0.0))
+    ),
 }
 MOVING_Q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
 AT_RATIOS = {
     **USUAL,
-    "stretched": uniform_cubic_b_spline(4, "stretched"),
-    "timed": uniform_cubic_b_spline(4, "timed"),
+    "stretched": curves.uniform_cubic_b_spline(4, "stretched"),
+    "timed": curves.uniform_cubic_b_spline(4, "timed"),
 }
 
 
@@ -58,7 +54,7 @@ PROBLEMS = {
     "uneven, free": replace(
         uneven_problem("quintic"),
         limits=Limits([[-0.9, 1.4], [-2, 1.1]], [[-3, 5], [-6, 2.5]]),
-        curve=piecewise((5, 5, 5), 2),
+        curve=curves.piecewise((5, 5, 5), 2),
     ),
     **{
         f"{name} at ratios": Problem(Q, LIMITS, curve, 0.3, ratios=[1.0, 1.7, 0.6])
@@ -71,7 +67,7 @@ PROBLEMS = {
     "small 3-5-3": small_problem("3-5-3", 2),
     **{f"long {name}": long_problem(curve) for name, curve in long_curves(26).items()},
     "long, uneven": replace(
-        long_problem(cubic_spline(26)),
+        long_problem(curves.cubic_spline(26)),
         limits=Limits([[-1.0, 2.0]] * 2, [[-4.0, 2.0]] * 2, [[-30.0, 60.0]] * 2),
     ),
 }
@@ -158,12 +154,12 @@ def random_problem(number: int) -> Problem:
     generator = np.random.default_rng(1000 + number)
     n = int(generator.integers(2, 5))
     curve = (
-        three_five_three(),
-        piecewise((4, 3, 4)),
-        cubic_spline(n),
-        quintic_spline(n),
-        septic_spline(max(n, 3)),
-        rest_to_rest(n, 5),
+        curves.three_five_three(),
+        curves.piecewise((4, 3, 4)),
+        curves.cubic_spline(n),
+        curves.quintic_spline(n),
+        curves.septic_spline(max(n, 3)),
+        curves.rest_to_rest(n, 5),
     )[number % 6]
     joints = int(generator.integers(1, 4))
     q = np.cumsum(generator.normal(size=(curve.segments + 1, joints)), axis=0)

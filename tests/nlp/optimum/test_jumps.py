@@ -123,9 +123,8 @@ def test_known_motions_and_starts_go_with_it() -> None:
     problem = free_speeds()
     best = solve(problem)
     slow = np.array(best.durations) * 1.5
-    known = solve(
-        problem, initial=slow, known=best.durations[None], known_nodal=best.nodal[None], starts=1
-    )
+    earlier = {"known": best.durations[None], "known_nodal": best.nodal[None]}
+    known = solve(problem, initial=slow, starts=1, **earlier)
     assert known.total_time <= best.total_time * (1 + 1e-9)
     assert solve(problem, initial=slow, known=slow).total_time < slow.sum()
 
@@ -197,11 +196,7 @@ def test_a_jump_that_no_durations_avoid_is_a_proof(problem: Problem, reason: str
 def test_a_still_segment_beside_a_moving_one_jumps() -> None:
     problem = Problem(np.array([[0.2], [0.2], [1.0]]), Limits(1.0, 2.0, 3.0), rest_to_rest(2, 3))
     assert joined(problem) == "the acceleration of joint 1 jumps at way-point 2 for any durations"
-    two = Problem(
-        np.array([[0.2, 1.0], [0.5, 1.4], [1.0, 1.7]]),
-        Limits(1.0, joints=2),
-        piecewise((1, 1), 0, ()),
-    )
+    two = Problem([[0.2, 1.0], [0.5, 1.4], [1.0, 1.7]], Limits(1.0), piecewise((1, 1), 0, ()))
     assert "the velocity of joint 2 jumps at way-point 2" in str(joined(two))
 
 

@@ -204,9 +204,7 @@ def test_a_stretched_motion_is_found(monkeypatch: pytest.MonkeyPatch, curve: Int
     assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
 
 
-WAY = np.array(
-    [[0.00014985578991195], [0.00025145336379865], [0.00095632029691939], [0.0028869372]]
-)
+WAY = np.c_[[0.00014985578991195, 0.00025145336379865, 0.00095632029691939, 0.0028869372]]
 LIMITS = Limits(
     acceleration=12.899170530102031,
     jerk=1124.7368118743839,

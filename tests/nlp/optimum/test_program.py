@@ -12,17 +12,7 @@ from trajgap.nlp import build
 from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import near_rows
 from trajgap.nlp.optimum.starts import first_nodal
-from trajgap.problem import (
-    Array,
-    Limits,
-    Problem,
-    cubic_spline,
-    extrema,
-    fit,
-    load_case,
-    piecewise,
-    quintic_spline_virtual,
-)
+from trajgap.problem import Array, Limits, Problem, curves, extrema, fit, load_case
 
 REST = ((1, 0.0), (2, 0.0))
 Q = [[0.1], [0.9], [0.3]]
@@ -30,16 +20,18 @@ DECLARED = {
     **{family: small_problem(family, 3) for family in FAMILIES},
     **{f"26 segments, {name}": long_problem(curve) for name, curve in long_curves(26).items()},
     **{f"uneven {name}": uneven_problem(name) for name in UNEVEN if name != "stretched"},
-    "one segment": Problem([[0.1, 1.0], [0.9, -0.4]], Limits(1.0, 3.0, joints=2), piecewise((5,))),
-    "moving ends": Problem(
-        Q, Limits(2.0, 6.0), cubic_spline(2, ends=((1, 0.4),), finish=((1, -0.2),))
+    "one segment": Problem(
+        [[0.1, 1.0], [0.9, -0.4]], Limits(1.0, 3.0, joints=2), curves.piecewise((5,))
     ),
-    "fixed ratios": Problem(Q, Limits(2.0, 6.0), cubic_spline(2), ratios=(1, 3)),
-    "virtual": Problem([*Q, [1.0]], Limits(2.0, 6.0, 40.0), quintic_spline_virtual(4)),
+    "moving ends": Problem(
+        Q, Limits(2.0, 6.0), curves.cubic_spline(2, ends=((1, 0.4),), finish=((1, -0.2),))
+    ),
+    "fixed ratios": Problem(Q, Limits(2.0, 6.0), curves.cubic_spline(2), ratios=(1, 3)),
+    "virtual": Problem([*Q, [1.0]], Limits(2.0, 6.0, 40.0), curves.quintic_spline_virtual(4)),
     "a higher degree first": Problem(
         np.cumsum(np.random.default_rng(4).normal(size=(10, 1)), axis=0),
         Limits(2.0, 6.0),
-        piecewise((4, *(3,) * 8), 2, ends=REST, finish=REST[:1]),
+        curves.piecewise((4, *(3,) * 8), 2, ends=REST, finish=REST[:1]),
     ),
 }
 SPLINES = {

@@ -15,20 +15,16 @@ from trajgap.problem import (
     Problem,
     Verdict,
     check,
-    cubic_spline,
+    curves,
     evaluate,
     fit,
     keeps_limits,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
 )
 
-CURVES = (three_five_three(), cubic_spline(3), quintic_spline(3))
+CURVES = (curves.three_five_three(), curves.cubic_spline(3), curves.quintic_spline(3))
 APART = Limits([4.0, 5.0], [6.0, 5.0], [90.0, 80.0], deceleration=[4.0, 8.0])
 SNAP = Limits([4.0, 5.0], [6.0, 5.0], [40.0, 50.0], snap=[170.0, 230.0])
-FREE = piecewise((5,) * 3, 2, ((1, 0.0), (2, 0.0)))
+FREE = curves.piecewise((5,) * 3, 2, ((1, 0.0), (2, 0.0)))
 """Quintics whose jerk may jump."""
 
 
@@ -53,7 +49,7 @@ def sampled(problem: Problem, h: Array) -> Array:
 
 def test_a_septic_takes_the_fourth_root_of_its_peak_snap() -> None:
     # 4-5-6-7: the snap is d/h⁴ (840 − 10080 s + 25200 s² − 16800 s³), largest at both ends.
-    problem = walk(1, Limits(snap=[50.0, 20.0]), rest_to_rest(3, 7))
+    problem = walk(1, Limits(snap=[50.0, 20.0]), curves.rest_to_rest(3, 7))
     ways = np.abs(np.diff(problem.waypoints, axis=0))
     h = (840.0 * ways / problem.limits.snap).max(axis=1) ** 0.25
     found = solve(problem)
@@ -68,7 +64,7 @@ def test_a_septic_takes_the_fourth_root_of_its_peak_snap() -> None:
 @pytest.mark.parametrize("limits", [APART, SNAP], ids=["deceleration", "snap"])
 @pytest.mark.parametrize("seed", range(4))
 def test_another_solver_on_samples_finds_nothing_shorter(limits: Limits, seed: int) -> None:
-    problem = walk(seed, limits, quintic_spline(3) if limits is SNAP else CURVES[seed % 3])
+    problem = walk(seed, limits, curves.quintic_spline(3) if limits is SNAP else CURVES[seed % 3])
     found = solve(problem)
     assert (found.status, check(problem, found.durations).verdict) == ("converged", Verdict.PASS)
     assert 1 - 5e-3 < sampled(problem, found.durations).max() <= 1 + 1e-9
@@ -104,7 +100,7 @@ def test_backwards_in_time_acceleration_and_deceleration_are_exchanged(seed: int
 
 
 def test_a_curve_whose_jerk_jumps_keeps_no_limit_of_snap() -> None:
-    cubic, stops = (walk(2, SNAP, c) for c in (cubic_spline(3), rest_to_rest(3, 5)))
+    cubic, stops = (walk(2, SNAP, c) for c in (curves.cubic_spline(3), curves.rest_to_rest(3, 5)))
     found = check(cubic, [9.0, 9.0, 9.0])
     assert (found.verdict, found.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
     assert {jump.order for jump in found.jumps} == {3}
@@ -118,7 +114,7 @@ def test_a_curve_whose_jerk_jumps_keeps_no_limit_of_snap() -> None:
     assert check(free.problem, free.durations, free.nodal).verdict is Verdict.PASS
 
 
-@pytest.mark.parametrize("curve", [FREE, quintic_spline(25)], ids=["free", "many segments"])
+@pytest.mark.parametrize("curve", [FREE, curves.quintic_spline(25)], ids=["free", "many segments"])
 def test_where_the_nlp_answers_the_smaller_size_counts_and_is_named(curve: Curve) -> None:
     problem = walk(4, APART, curve)
     found, narrow = solve(problem), solve(replace(problem, limits=APART.narrow))
@@ -129,7 +125,7 @@ def test_where_the_nlp_answers_the_smaller_size_counts_and_is_named(curve: Curve
 
 @pytest.mark.parametrize(("limits", "said"), [(APART, "deceleration"), (SNAP, "snap")])
 def test_what_is_proved_leaves_the_limit_out_and_says_so(limits: Limits, said: str) -> None:
-    problem = walk(5, limits, rest_to_rest(3, 7))
+    problem = walk(5, limits, curves.rest_to_rest(3, 7))
     proof = certify(problem)
     assert (proof.problem.relaxed, proof.upper, proof.durations) == ((said,), None, None)
     assert proof.verdict is not None

@@ -10,19 +10,7 @@ from trajgap.nlp import Solution, Status, kkt, random_starts, shipped
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.basins import EVOLUTION
 from trajgap.nlp.optimum.optimality import sharpened, sparse_kkt
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    load_case,
-    piecewise,
-    rest_to_rest,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curves, load_case
 from trajgap.problem.curves.adjoint import Places
 
 PUMA = "puma560-mnam-pso-353"
@@ -60,13 +48,15 @@ def test_puma_optima_lie_in_their_certified_intervals(reading: str, joint: int |
 def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None:
     q = np.array([[0.3, 1.0], [0.9, 0.2], [0.9, 0.2], [1.4, 0.8]])
     limits = Limits([1.0, 1.5], [3.0, 4.0])
-    solution = solve(Problem(q, limits, rest_to_rest(3, 5)))
-    parts = [solve(Problem(q[i : i + 2], limits, rest_to_rest(1, 5))).total_time for i in (0, 2)]
+    solution = solve(Problem(q, limits, curves.rest_to_rest(3, 5)))
+    parts = [
+        solve(Problem(q[i : i + 2], limits, curves.rest_to_rest(1, 5))).total_time for i in (0, 2)
+    ]
     assert solution.status is Status.NOT_ATTAINED
     assert solution.why is not None
     assert "segment 2" in solution.why
     assert solution.infimum == pytest.approx(sum(parts), rel=1e-9)
-    bounded = solve(Problem(q, limits, rest_to_rest(3, 5), [0.0, 0.25, 0.0]))
+    bounded = solve(Problem(q, limits, curves.rest_to_rest(3, 5), [0.0, 0.25, 0.0]))
     assert bounded.status is Status.CONVERGED
     assert bounded.total_time == pytest.approx(sum(parts) + 0.25, rel=1e-9)
 
@@ -74,7 +64,7 @@ def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None
 @pytest.mark.parametrize("joints", [1, 2])
 def test_a_still_first_segment_of_any_angle_is_named(joints: int) -> None:
     q = np.array([[0.3, 1.0], [0.3, 1.0], [0.9, 0.5], [1.4, 0.8]])[:, :joints]
-    solution = solve(Problem(q, Limits(1.0, 3.0, joints=joints), three_five_three()))
+    solution = solve(Problem(q, Limits(1.0, 3.0, joints=joints), curves.three_five_three()))
     assert solution.status is Status.NOT_ATTAINED
     assert solution.infimum < solution.total_time
     assert "the duration of segment 1 goes to 0" in solution.why
@@ -86,11 +76,11 @@ ZIGZAG = np.array([[0.3], [0.9], [0.1], [1.4]])
 @pytest.mark.parametrize(
     "problem",
     [
-        Problem(ZIGZAG, Limits(), three_five_three()),
-        Problem(np.full((4, 2), 0.7), Limits(1.0, 2.0), three_five_three()),
-        Problem([[0.4], [0.4]], Limits(1.0, 2.0), uniform_cubic_b_spline(2, "stretched")),
-        Problem(ZIGZAG, Limits(), cubic_spline(3), ratios="equal"),
-        Problem(np.zeros((3, 1)), Limits(1.0), cubic_spline(2), ratios="equal"),
+        Problem(ZIGZAG, Limits(), curves.three_five_three()),
+        Problem(np.full((4, 2), 0.7), Limits(1.0, 2.0), curves.three_five_three()),
+        Problem([[0.4], [0.4]], Limits(1.0, 2.0), curves.uniform_cubic_b_spline(2, "stretched")),
+        Problem(ZIGZAG, Limits(), curves.cubic_spline(3), ratios="equal"),
+        Problem(np.zeros((3, 1)), Limits(1.0), curves.cubic_spline(2), ratios="equal"),
     ],
 )
 def test_nothing_that_moves_or_nothing_that_limits_has_infimum_zero(problem: Problem) -> None:
@@ -105,8 +95,8 @@ def test_nothing_that_moves_or_nothing_that_limits_has_infimum_zero(problem: Pro
 
 def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
     q = np.array([[0.3, 1.0], [0.9, 1.0], [0.5, 1.0], [1.4, 1.0]])
-    alone = solve(Problem(q[:, :1], Limits(1.0, 3.0), three_five_three()))
-    both = solve(Problem(q, Limits([1.0, 0.0], [3.0, 0.0]), three_five_three()))
+    alone = solve(Problem(q[:, :1], Limits(1.0, 3.0), curves.three_five_three()))
+    both = solve(Problem(q, Limits([1.0, 0.0], [3.0, 0.0]), curves.three_five_three()))
     assert both.status is Status.CONVERGED
     assert both.total_time == pytest.approx(alone.total_time, rel=1e-9)
 
@@ -123,7 +113,7 @@ def test_starts_of_the_wrong_length_or_number_are_refused() -> None:
 
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_what_a_bound_on_a_duration_costs_is_a_difference_of_totals(side: str) -> None:
-    problem = Problem(Q, LIMITS, three_five_three())
+    problem = Problem(Q, LIMITS, curves.three_five_three())
     free = solve(problem).durations
     bound = np.zeros(3) if side == "lower" else np.full(3, 9.0)
     bound[1] = free[1] * (1.2 if side == "lower" else 0.9)
@@ -141,7 +131,7 @@ def test_what_a_bound_on_a_duration_costs_is_a_difference_of_totals(side: str) -
 
 def test_a_limit_reached_at_a_break_belongs_to_the_segment_before() -> None:
     """Both segments reach it there: by the banded conditions as by the dense ones."""
-    problem = Problem([[0.0], [1.0], [2.0]], Limits(1.0, 9.0), cubic_spline(2))
+    problem = Problem([[0.0], [1.0], [2.0]], Limits(1.0, 9.0), curves.cubic_spline(2))
     durations = np.array([1.5, 1.5])  # by symmetry the speed is largest at the break
     one, none = np.zeros(1, dtype=np.int64), np.zeros(1)
     places = Places(one, one + 1, one + 1, none)
@@ -162,7 +152,7 @@ LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
 
 
 def test_only_an_optimum_has_a_small_residual() -> None:
-    problem = Problem(Q, LIMITS, three_five_three())
+    problem = Problem(Q, LIMITS, curves.three_five_three())
     best = solve(problem).durations
     assert kkt(problem, best).residual <= 1e-10
     assert kkt(problem, best * 1.01).residual > 0.1
@@ -172,7 +162,7 @@ def test_only_an_optimum_has_a_small_residual() -> None:
 
 
 def test_newton_sharpens() -> None:
-    problem = Problem(Q, LIMITS, three_five_three())
+    problem = Problem(Q, LIMITS, curves.three_five_three())
     best = solve(problem).durations
     blurred = best * (1 + 1e-9)
     sharp = sharpened(problem, blurred)
@@ -182,11 +172,11 @@ def test_newton_sharpens() -> None:
 
 
 def test_free_derivatives_cost_no_time_and_enter_the_conditions() -> None:
-    problem = Problem(Q, LIMITS, piecewise((5, 5, 5), 2))
+    problem = Problem(Q, LIMITS, curves.piecewise((5, 5, 5), 2))
     solution = solve(problem)
     assert solution.status is Status.CONVERGED
     assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
-    assert solution.total_time < solve(Problem(Q, LIMITS, three_five_three())).total_time
+    assert solution.total_time < solve(Problem(Q, LIMITS, curves.three_five_three())).total_time
     assert solution.kkt_residual <= 1e-8
     shifted = solution.nodal + np.array([[0.05], [0.0], [0.0], [0.0]])
     assert kkt(problem, solution.durations, shifted).residual > 1e-3

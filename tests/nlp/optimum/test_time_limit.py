@@ -17,15 +17,7 @@ from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Request
 from trajgap.nlp.proofs.quintic import windows
 from trajgap.nlp.proofs.session import Session
-from trajgap.problem import (
-    Limits,
-    Problem,
-    Verdict,
-    check,
-    cubic_spline,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Limits, Problem, Verdict, check, curves
 from trajgap.verify import OutOfTime
 
 
@@ -36,16 +28,13 @@ def ticking(monkeypatch: pytest.MonkeyPatch, step: float = 1.0) -> Ticking:
 
 
 RNG = np.random.default_rng(20261122)
-MANY = Problem(RNG.normal(size=(7, 3)), Limits([1.1] * 3, [1.9] * 3), cubic_spline(6))
-NEAR = Problem(
-    np.array([[2.2], [0.8], [-0.7], [1.28], [1.2801]]),
-    Limits(0.23, 0.1, 0.33, position_lower=-1.3, position_upper=2.4, joints=1),
-    cubic_spline(4),
-)
+MANY = Problem(RNG.normal(size=(7, 3)), Limits([1.1] * 3, [1.9] * 3), curves.cubic_spline(6))
+NEAR_LIMITS = Limits(0.23, 0.1, 0.33, position_lower=-1.3, position_upper=2.4)
+NEAR = Problem([2.2, 0.8, -0.7, 1.28, 1.2801], NEAR_LIMITS, curves.cubic_spline(4))
 """Searched by exact descents."""
-THREE = Problem(RNG.normal(size=(4, 2)), Limits([1.1] * 2, [1.9] * 2), three_five_three())
+THREE = Problem(RNG.normal(size=(4, 2)), Limits([1.1] * 2, [1.9] * 2), curves.three_five_three())
 UNIFORM = Problem(
-    RNG.normal(size=(5, 2)), Limits([1.1] * 2, [1.9] * 2), uniform_cubic_b_spline(5, "timed")
+    RNG.normal(size=(5, 2)), Limits(1.1, 1.9), curves.uniform_cubic_b_spline(5, "timed")
 )
 PROBLEMS = {"many": MANY, "near": NEAR, "three": THREE, "uniform": UNIFORM}
 

@@ -21,20 +21,14 @@ from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import Limits, Problem, cubic_spline
 from trajgap.verify import Subject, verify_certificate
 
-ROUGH = Problem(
-    [[-1.0, 0.3], [0.4, -0.7], [1.1, 0.9], [-0.2, 0.1]],
-    Limits(np.inf, np.inf, [5.0, 7.0]),
-    cubic_spline(3),
-)
+JERK = Limits(jerk=[5.0, 7.0])
+ROUGH = Problem([[-1.0, 0.3], [0.4, -0.7], [1.1, 0.9], [-0.2, 0.1]], JERK, cubic_spline(3))
 """Jerk limits alone take boxes enough for several to be under way."""
 
 
 RNG = np.random.default_rng(2)
-FAST = Problem(
-    RNG.uniform(-1.0, 1.0, (6, 3)),
-    Limits(RNG.uniform(1, 2, 3), RNG.uniform(1, 2, 3)),
-    cubic_spline(5),
-)
+WALK = RNG.uniform(-1.0, 1.0, (6, 3))
+FAST = Problem(WALK, Limits(RNG.uniform(1, 2, 3), RNG.uniform(1, 2, 3)), cubic_spline(5))
 """Several ways of braking have to be told apart."""
 
 

@@ -199,7 +199,7 @@ LONGER = {"duration_upper": ["99"] * 3}
 INFEASIBLE: dict[str, tuple[Callable[[], Problem], dict[str, list[str]]]] = {
     "3-5-3": (
         lambda: Problem(
-            [[0.2], [1.1], [-0.4], [0.7]], Limits(1.0, 2.0), three_five_three(), 0.1, (4, 1.4, 4)
+            [0.2, 1.1, -0.4, 0.7], Limits(1.0, 2.0), three_five_three(), 0.1, (4, 1.4, 4)
         ),
         LONGER,
     ),

@@ -18,7 +18,6 @@ from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.documents import Gap, SolveDocument, Why, solve_result
 from trajgap.nlp import (
     Evidence,
-    ExactProblem,
     ProvedInterval,
     Status,
     certificate,
@@ -237,25 +236,22 @@ def test_the_weakest_word_stands_for_all() -> None:
 def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
     study = known_study()
     monkeypatch.setattr(Study, "claim_total", lambda *_: Total("1.5 s", (1.4995, 1.5005)))
-    (message,) = (
-        f.message
-        for f in judge_distances(study)
-        if f.claim == "durations-80" and isinstance(f.gap, Gap)
-    )
+    found = [f for f in judge_distances(study) if f.claim == "durations-80"]
+    (message,) = (f.message for f in found if isinstance(f.gap, Gap))
     assert "below the proved lower bound of this problem" in message
     assert "best known" not in message
+
+
+def only_any(bound: ProvedInterval, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = {Subject.ANY: bound}
+    monkeypatch.setattr(intervals_module, "proved", lambda _, subject: found.get(subject))
 
 
 @pytest.mark.parametrize("upper", [None, Fraction(1, 2)])
 def test_a_bound_for_any_curve_stands_on_the_waterfall(
     monkeypatch: pytest.MonkeyPatch, upper: Fraction | None
 ) -> None:
-    bound = ProvedInterval(Fraction(2, 5), upper, None, False)
-
-    def only_any(problem: ExactProblem, subject: Subject) -> ProvedInterval | None:
-        return bound if subject is Subject.ANY else None
-
-    monkeypatch.setattr(intervals_module, "proved", only_any)
+    only_any(ProvedInterval(Fraction(2, 5), upper, None, False), monkeypatch)
     (waterfall,) = waterfalls(known_study())
     step = waterfall.steps[-1]
     # The nearest double lies above 2/5, and would be no lower bound.
@@ -276,10 +272,7 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     study = known_study()
     found = estimate_any_curve(study.problem(study.pairs[0])).total_time
     lower = Fraction(found) * Fraction(1 + above)
-    bound = ProvedInterval(lower, lower + Fraction(1, 10**9), None, False)
-    monkeypatch.setattr(
-        intervals_module, "proved", lambda _, subject: bound if subject is Subject.ANY else None
-    )
+    only_any(ProvedInterval(lower, lower + Fraction(1, 10**9), None, False), monkeypatch)
     step = waterfalls(study)[0].steps[-1]
     assert (step.evidence is Evidence.CERTIFIED) == certified
     assert isinstance(step.time, float)

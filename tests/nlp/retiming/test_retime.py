@@ -11,23 +11,9 @@ from support.same_question import DRESSES, OWN_UNITS, same_question
 from trajgap.nlp.retiming.grid import measure, sample
 from trajgap.nlp.retiming.path import pieces
 from trajgap.nlp.retiming.toppra_check import GRIDPOINTS, extrapolate, retime
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    check,
-    cubic_spline,
-    cubic_spline_virtual,
-    extrema,
-    fit,
-    piecewise,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, check, curves, extrema, fit
 
-MOTION = puma(three_five_three(), PUMA_353)
+MOTION = puma(curves.three_five_three(), PUMA_353)
 THERE_AND_BACK = [[0.3], [1.7], [0.9]], [1.5, 1.2]
 STRAIGHT = [[0.2, -1.0, 3.0], [1.1, 1.5, 2.3]], [2.0]
 CORNERS = [[0.1, 0.9, -0.3], [0.8, 0.2, -0.3], [0.9, -1.4, 0.5], [-0.2, -1.1, 0.1]], [1.0, 1.6, 1.3]
@@ -54,7 +40,7 @@ def test_straight_segments_from_rest_to_rest(
     degree: int,
 ) -> None:
     q, h = path
-    found = retime(fit(rest_to_rest(len(h), degree), q, h), Limits(velocity, acceleration))
+    found = retime(fit(curves.rest_to_rest(len(h), degree), q, h), Limits(velocity, acceleration))
     steps = [np.where(step == 0, 1e-300, step) for step in np.diff(q, axis=0) if step.any()]
     assert close(found, sum(rest_to_rest_time(step, velocity, acceleration) for step in steps))
     assert found.cuts == pytest.approx((0.0, *np.cumsum(h)), abs=1e-9)
@@ -108,19 +94,17 @@ def test_retiming_never_takes_longer_than_a_feasible_trajectory(seed: int) -> No
     generator = np.random.default_rng(seed)
     joints, segments = int(generator.integers(1, 7)), int(generator.integers(2, 6))
     interpolant = (
-        three_five_three(),
-        quintic_spline(segments),
-        cubic_spline(segments),
-        cubic_spline_virtual(segments + 1),
-        rest_to_rest(segments, 5),
-        piecewise((4, 3, 4), 2),
+        curves.three_five_three(),
+        curves.quintic_spline(segments),
+        curves.cubic_spline(segments),
+        curves.cubic_spline_virtual(segments + 1),
+        curves.rest_to_rest(segments, 5),
+        curves.piecewise((4, 3, 4), 2),
     )[seed % 6]
     shape = (len(interpolant.waypoint_breaks), joints)
-    problem = Problem(
-        generator.normal(size=shape) + generator.normal(size=joints),
-        Limits(generator.uniform(1, 6, joints), generator.uniform(2, 20, joints)),
-        interpolant,
-    )
+    q = generator.normal(size=shape) + generator.normal(size=joints)
+    limits = Limits(generator.uniform(1, 6, joints), generator.uniform(2, 20, joints))
+    problem = Problem(q, limits, interpolant)
     h = generator.uniform(0.3, 1.5, interpolant.segments)
     repaired = h * check(problem, h).stretch
     curve = fit(interpolant, problem.waypoints, repaired)
@@ -138,7 +122,7 @@ def test_retiming_never_takes_longer_than_a_feasible_trajectory(seed: int) -> No
     ],
 )
 def test_no_inequality(factor: float, gridpoints: tuple[int, ...], why: str) -> None:
-    curve = puma(three_five_three(), factor * PUMA_353)
+    curve = puma(curves.three_five_three(), factor * PUMA_353)
     found = retime(curve, PUMA_LIMITS, gridpoints=gridpoints)
     assert found.applicable
     assert found.inequality_holds is None
@@ -148,7 +132,7 @@ def test_no_inequality(factor: float, gridpoints: tuple[int, ...], why: str) -> 
 def test_many_segments_get_more_cells() -> None:
     q = np.cumsum(np.random.default_rng(0).normal(size=(41, 3)), axis=0)
     limits = Limits(3.0, 8.0, joints=3)
-    problem = Problem(q, limits, quintic_spline(40))
+    problem = Problem(q, limits, curves.quintic_spline(40))
     h = np.full(40, 0.7)
     curve = fit(problem.curve, q, h * check(problem, h).stretch)
     found = retime(curve, limits, gridpoints=(200, 400, 800))
@@ -157,7 +141,7 @@ def test_many_segments_get_more_cells() -> None:
 
 
 def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:
-    (piece,), _ = pieces(fit(rest_to_rest(1, 5), [[0.0, 0.0], [3.0, 4.0]], [2.0]))
+    (piece,), _ = pieces(fit(curves.rest_to_rest(1, 5), [[0.0, 0.0], [3.0, 4.0]], [2.0]))
     sampled = sample(piece, measure(piece), 40)
     # |q'| of a quintic from rest to rest over 5 rad in 2 s, at the share of the way that is s.
     u = np.linspace(0.0, 1.0, 100_001)
@@ -170,7 +154,7 @@ def test_a_path_whose_parameter_is_not_linear_in_time_is_a_path_as_any_other() -
     """Control points of a timed B-spline do not depend on the durations: one path, two clocks."""
     waypoints = np.array([[0.1, 0.5], [0.6, 0.1], [1.0, 0.4], [0.7, 1.1], [0.2, 0.9]])
     limits = Limits(velocity=[1.2, 0.9], acceleration=[3.0, 2.5])
-    curve = uniform_cubic_b_spline(5, "timed")
+    curve = curves.uniform_cubic_b_spline(5, "timed")
     clocks = [np.full(4, 1.0), np.array([0.9, 1.1, 1.3, 0.8])]
     motions = [fit(curve, waypoints, durations) for durations in clocks]
     assert not any(motion.polynomial_in_time for motion in motions)
@@ -191,7 +175,7 @@ def test_a_path_whose_parameter_is_not_linear_in_time_is_a_path_as_any_other() -
 @pytest.mark.parametrize("dress", [*DRESSES[1:], OWN_UNITS])
 def test_another_dress_changes_no_time(dress: str) -> None:
     limits = Limits(np.linspace(2, 4, 6), np.linspace(5, 9, 6))
-    problem, h = Problem(PUMA, limits, quintic_spline(3)), np.array([0.9, 0.8, 1.1])
+    problem, h = Problem(PUMA, limits, curves.quintic_spline(3)), np.array([0.9, 0.8, 1.1])
     other, durations = same_question(dress, problem, h)
     base = retime(fit(problem.curve, PUMA, h), limits).extrapolated
     found = retime(fit(other.curve, other.waypoints, durations), other.limits)
@@ -245,9 +229,8 @@ def test_samples_against_finite_differences() -> None:
     middle = (path.before + path.after) / 2
     assert np.allclose(slope[inner], middle[inner], atol=2e-3 * np.abs(middle[inner]).max())
     times = np.linspace(0, MOTION.total_time, 200_001)
-    assert path.s[-1] == pytest.approx(
-        np.trapezoid(np.linalg.norm(MOTION(times, 1), axis=1), times), rel=1e-8
-    )
+    length = np.trapezoid(np.linalg.norm(MOTION(times, 1), axis=1), times)
+    assert path.s[-1] == pytest.approx(length, rel=1e-8)
     # The grid is graded at the rest ends, where q″ grows like s^(−2/3): s ~ τ³.
     share = np.log(path.s[8] / path.s[4]) / np.log(2)
     assert 2.7 < share < 3.3
@@ -277,8 +260,8 @@ def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
 )
 def test_limits_of_joints_at_rest_do_not_matter(limits: Limits) -> None:
     q = np.column_stack([PUMA[:, 0], np.full(4, 0.7)])
-    found = retime(fit(three_five_three(), q, PUMA_353), limits)
-    alone = retime(fit(three_five_three(), q[:, :1], PUMA_353), Limits(6.0, 8.0, joints=1))
+    found = retime(fit(curves.three_five_three(), q, PUMA_353), limits)
+    alone = retime(fit(curves.three_five_three(), q[:, :1], PUMA_353), Limits(6.0, 8.0, joints=1))
     assert found.durations == pytest.approx(alone.durations, rel=1e-5)
     assert found.inequality_holds
 
@@ -330,7 +313,7 @@ def test_summary_on_one_screen() -> None:
 def test_a_straight_line_without_a_velocity_limit_has_its_closed_form() -> None:
     # Constant speed 1.2 rad/s reaches no limit at all; between the same end speeds 2 rad/s² win:
     # 0.3 = 1.2 τ + τ² for each half.
-    straight = fit(cubic_spline(1, ends=((2, 0.0),)), np.array([[0.1], [0.7]]), np.array([0.5]))
+    straight = fit(curves.cubic_spline(1, ends=((2, 0.0),)), np.array([[0.1], [0.7]]), [0.5])
     found = retime(straight, Limits(np.inf, 2.0))
     assert found.applicable
     assert found.extrapolated == pytest.approx(-1.2 + np.sqrt(1.44 + 1.2), rel=1e-5)

@@ -154,9 +154,8 @@ def test_a_motion_within_the_limits_is_never_shorter_than_the_lower_bound() -> N
     first, second = BENT(total * s, 1), BENT(total * s, 2)
     speed = total * first * v[:, None]
     push = (total * first * a[:, None]) + second * (total * v[:, None]) ** 2
-    stretch = max(
-        (np.abs(speed) / LIMITS.velocity).max(), np.sqrt(np.abs(push) / LIMITS.acceleration).max()
-    )
+    speeds, pushes = np.abs(speed) / LIMITS.velocity, np.abs(push) / LIMITS.acceleration
+    stretch = max(speeds.max(), np.sqrt(pushes).max())
     found = along(BENT, LIMITS)
     assert found.upper < stretch
     assert narrow(found, 2e-3)

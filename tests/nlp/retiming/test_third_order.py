@@ -3,15 +3,7 @@
 import numpy as np
 import pytest
 from trajgap.nlp.retiming import jerk_limited_path, retime_third_order
-from trajgap.problem import (
-    Limits,
-    Problem,
-    check,
-    cubic_spline_virtual,
-    fit,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Limits, Problem, check, curves, fit
 
 
 def timed(problem: Problem, durations: list[float], cells: int = 240) -> float:
@@ -33,7 +25,7 @@ def timed(problem: Problem, durations: list[float], cells: int = 240) -> float:
     ],
 )
 def test_a_straight_line_takes_the_time_of_a_double_s(limits: Limits, closed: float) -> None:
-    problem = Problem([[0.0], [1.0]], limits, rest_to_rest(1, 7))
+    problem = Problem([[0.0], [1.0]], limits, curves.rest_to_rest(1, 7))
     coarse, fine = (timed(problem, [2.0], cells) for cells in (60, 240))
     assert closed * (1 - 1e-3) < fine < closed * 1.01
     assert abs(fine - closed) < abs(coarse - closed)
@@ -42,7 +34,7 @@ def test_a_straight_line_takes_the_time_of_a_double_s(limits: Limits, closed: fl
 @pytest.mark.parametrize("seed", range(4))
 def test_a_motion_within_its_limits_is_one_of_the_timings(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    curve = (three_five_three(), cubic_spline_virtual(4))[seed % 2]
+    curve = (curves.three_five_three(), curves.cubic_spline_virtual(4))[seed % 2]
     limits = Limits([1.0, 2.0], [3.0, 4.0], [20.0, 30.0])
     problem = Problem(rng.uniform(-1, 1, (4, 2)), limits, curve)
     shape = np.ones(problem.segments)
@@ -57,7 +49,7 @@ def test_a_motion_within_its_limits_is_one_of_the_timings(seed: int) -> None:
 
 
 def test_where_it_does_not_apply() -> None:
-    curve, points = rest_to_rest(1, 5), np.array([[0.0], [1.0]])
+    curve, points = curves.rest_to_rest(1, 5), np.array([[0.0], [1.0]])
     moving = fit(curve, points, np.array([1.0]))
     still = fit(curve, np.zeros((2, 1)), np.array([1.0]))
     assert not jerk_limited_path(moving, Limits(1.0, 2.0))

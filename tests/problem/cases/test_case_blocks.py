@@ -40,9 +40,8 @@ def test_a_problem_of_some_joints_keeps_listing_all():
     """And its one value needs no list."""
     header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
     claim = 'derivative = "velocity"\njoint = "d3"\nvalue = "0.2332"'
-    case = scara(
-        ('[[readings]]\nid = "rpm"\n', header), (claim, 'derivative = "velocity"\nvalue = "233.2"')
-    )
+    value = 'derivative = "velocity"\nvalue = "233.2"'
+    case = scara(('[[readings]]\nid = "rpm"\n', header), (claim, value))
     problem = case.problem()
     assert (problem.joints, problem.linear) == (("d3",), (True,))
     assert problem.limits.velocity == pytest.approx([0.12])

@@ -49,9 +49,8 @@ def test_what_is_too_long_is_refused(old, new, line):
 
 def test_several_faults_are_named_and_spelling_comes_first():
     text = BASE.replace('name = "arm"\n', "").replace('kind = "pso"', 'kinds = "pso"')
-    with pytest.raises(
-        CaseError, match=r"kinds: unknown key; .*; also robot.name: is missing"
-    ) as caught:
+    words = r"kinds: unknown key; .*; also robot.name: is missing"
+    with pytest.raises(CaseError, match=words) as caught:
         parse_case(text, "base.toml")
     assert [field for field, _ in caught.value.faults] == ["algorithms[0].kinds", "robot.name"]
 
@@ -61,10 +60,7 @@ def test_several_faults_are_named_and_spelling_comes_first():
     [
         (b" \n", "is empty; `trajgap new` writes a file to start from"),
         (b"id = 1\n\x00\x01", "is a binary file; a UTF-8 text file is needed"),
-        (
-            "id = 1\n# J\xf6rg".encode("latin-1"),
-            "line 2: is not UTF-8 text; save the file as UTF-8",
-        ),
+        (b"id = 1\n# J\xf6rg", "line 2: is not UTF-8 text; save the file as UTF-8"),
         (b"#" * 10_000_000, "has 10.0 MB, the limit is 5 MB; keep only the case itself"),
     ],
     ids=["empty", "binary", "Latin 1", "large"],
@@ -107,16 +103,10 @@ CASE = parse_case(BASE, "base.toml")
         (lambda: load_case("puma"), "^puma: neither a published case nor a file; "),
         (lambda: load_case("puma560-mnam-353"), "did you mean 'puma560-mnam-pso-353'"),
         (lambda: CASE.problem("on"), "^base.toml: problem: no problem 'on'; did you mean 'one'"),
-        (
-            lambda: CASE.problem("one", "deg"),
-            "^base.toml: reading: no reading 'deg'; known: plain, rad",
-        ),
+        (lambda: CASE.problem("one", "deg"), "^base.toml: reading: no reading 'deg'; known"),
         (lambda: CASE.claim("time"), "^base.toml: claim: no claim 'time'; did you mean 'times'"),
         (lambda: CASE.problem(coupling="x"), "coupling: unknown coupling 'x'; use shared, per-j"),
-        (
-            lambda: CASE.claim_durations(CASE.claim("peak")),
-            "claim 'peak': states no durations; choose one that does",
-        ),
+        (lambda: CASE.claim_durations(CASE.claim("peak")), "'peak': states no durations; choose"),
         (lambda: CASE.selections("x"), "no problem 'x'"),
         (lambda: CASE.selections(reading="x"), "no reading 'x'"),
     ],

@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 from support.case_texts import case_text
 from support.refusals import Refusal, each_refusal
-from trajgap.problem import (
-    Case,
-    CaseError,
-    ClampedBSpline,
-    Interpolant,
-    cubic_spline_virtual,
-    parse_case,
-    quintic_spline_virtual,
-)
+from trajgap.problem import Case, CaseError, ClampedBSpline, Interpolant, curves, parse_case
 from trajgap.problem.cases import end_states
 
 POINTS = "[10, -50, 3], [50, -30, 9], [12, 20, 30], [-25, 6, 4]"
@@ -88,8 +80,8 @@ def test_states_at_the_ends_are_those_of_each_end_and_joint_with_their_digits() 
 @pytest.mark.parametrize(
     ("long", "orders", "same"),
     [
-        ("cubic-spline", "[1, 2]", cubic_spline_virtual(4)),
-        ("quintic-spline", "[1, 2, 3]", quintic_spline_virtual(4)),
+        ("cubic-spline", "[1, 2]", curves.cubic_spline_virtual(4)),
+        ("quintic-spline", "[1, 2, 3]", curves.quintic_spline_virtual(4)),
     ],
 )
 def test_the_short_names_are_what_the_keys_say(long: str, orders: str, same: Interpolant) -> None:

@@ -92,9 +92,8 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
     """Of unrelated polynomials, by scipy's values at the two ends of every break."""
     rng = np.random.default_rng(pieces)
     problem, _ = sample_problem(rest_to_rest(pieces, 3), pieces)
-    curve = Trajectory(
-        rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3)), (3,) * pieces
-    )
+    h, scaled = rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3))
+    curve = Trajectory(h, scaled, (3,) * pieces)
     held, at = curve.polynomial, curve.breaks[1:-1]
     steps = np.array([held(at, r) - held(np.nextafter(at, 0.0), r) for r in range(3)])
     for _ in range(9):
@@ -120,13 +119,11 @@ def test_evaluate_shapes() -> None:
     problem, h = sample_problem(three_five_three(), 1)
     empty = evaluate(problem, np.empty((0, 3)))
     assert (empty.ratios.shape, empty.stretch.shape) == ((0, 3, 3), (0,))
-    np.testing.assert_array_equal(
-        evaluate(problem, np.asfortranarray(np.stack([h, 2 * h]))).ratios,
-        evaluate(problem, np.stack([h, 2 * h])).ratios,
-    )
-    np.testing.assert_array_equal(
-        evaluate(problem, [[1, 2, 3]]).ratios, evaluate(problem, [[1.0, 2.0, 3.0]]).ratios
-    )
+    both = np.stack([h, 2 * h])
+    ratios = evaluate(problem, both).ratios
+    np.testing.assert_array_equal(evaluate(problem, np.asfortranarray(both)).ratios, ratios)
+    whole, same = (evaluate(problem, [h]).ratios for h in ([1, 2, 3], [1.0, 2.0, 3.0]))
+    np.testing.assert_array_equal(whole, same)
     for wrong in (h, [[1.0, 2.0]], np.ones((2, 2, 3)), np.ones((2, 4))):
         with pytest.raises(TrajgapError, match=r"durations: a batch has shape \(vectors, 3\), got"):
             evaluate(problem, wrong)

@@ -100,10 +100,8 @@ def ends(problem: Problem, h: Array, nodal: Array | None, order: int) -> Array:
 
 
 def worst(found: Check, joints: tuple[str, ...], quantity: str) -> list[float]:
-    return [
-        max(p.ratio for p in found.peaks if (p.joint, p.quantity) == (joint, quantity))
-        for joint in joints
-    ]
+    peaks = [p for p in found.peaks if p.quantity == quantity]
+    return [max(p.ratio for p in peaks if p.joint == joint) for joint in joints]
 
 
 @pytest.mark.parametrize("uneven", [False, True])

@@ -4,18 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    TrajgapError,
-    cubic_spline,
-    cubic_spline_virtual,
-    fit,
-    piecewise,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Interpolant, Limits, Problem, TrajgapError, curves, fit
 
 REST = ((1, 0.0), (2, 0.0))
 JERK = (*REST, (3, 0.0))
@@ -53,24 +42,24 @@ def test_refusals(arguments: tuple[object, ...], message: str) -> None:
 
 def test_constructors_refuse() -> None:
     with pytest.raises(TrajgapError, match="at least two way-points are needed"):
-        cubic_spline_virtual(1)
+        curves.cubic_spline_virtual(1)
     for degree in (1, 4, 11):
         with pytest.raises(TrajgapError, match="rest-to-rest needs degree 3, 5, 7 or 9"):
-            rest_to_rest(2, degree)
+            curves.rest_to_rest(2, degree)
     with pytest.raises(TrajgapError, match="at least one segment"):
-        piecewise(())
+        curves.piecewise(())
 
 
 def test_long_declarations_are_judged_too() -> None:
     start, end = ((1, 0.0),), ((1, 0.0),)
-    assert cubic_spline(200).rank == 800
+    assert curves.cubic_spline(200).rank == 800
     # As many conditions as coefficients, but the first line has three of them and two coefficients.
     with pytest.raises(TrajgapError, match="318 conditions for 318 coefficients contradict"):
         Interpolant((1, *(3,) * 79), (0, *(2,) * 78), (start, *((),) * 79, end))
 
 
 def test_free_derivatives_complete_a_declaration() -> None:
-    quintics = piecewise((5, 5, 5), 2)
+    quintics = curves.piecewise((5, 5, 5), 2)
     assert quintics.free_derivatives == ((1, 1), (2, 1), (1, 2), (2, 2))
     full = quintics.completed()
     assert (full.free, full.conditions) == (0, 18)
@@ -78,7 +67,7 @@ def test_free_derivatives_complete_a_declaration() -> None:
     # with v = a = 0 at all breaks that is the rest-to-rest quintic
     q = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 2.0], [-0.5, 2.5]])
     h = [0.7, 1.1, 0.4]
-    mine, rest = fit(full, q, h), fit(rest_to_rest(3, 5), q, h)
+    mine, rest = fit(full, q, h), fit(curves.rest_to_rest(3, 5), q, h)
     np.testing.assert_allclose(mine.scaled, rest.scaled, atol=1e-13)
 
 
@@ -94,7 +83,7 @@ def test_free_virtual_position_becomes_a_waypoint() -> None:
 def test_free_coefficients_that_are_not_nodal() -> None:
     loose = Interpolant((9,), (), (((1, 0.0),), ((1, 0.0),)))
     assert loose.free_derivatives == tuple((b, order) for order in (2, 3, 4) for b in (0, 1))
-    torn = piecewise((3, 3, 3), 0, ())
+    torn = curves.piecewise((3, 3, 3), 0, ())
     with pytest.raises(
         TrajgapError, match="6 free coefficients, but only 4 of them are nodal derivatives; raise"
     ):
@@ -102,9 +91,9 @@ def test_free_coefficients_that_are_not_nodal() -> None:
 
 
 def test_declarations_compare_by_value() -> None:
-    assert three_five_three() == three_five_three()
-    assert hash(three_five_three()) == hash(three_five_three())
-    assert piecewise((3, 5, 3)).name == "3-5-3 polynomials, C2"
+    assert curves.three_five_three() == curves.three_five_three()
+    assert hash(curves.three_five_three()) == hash(curves.three_five_three())
+    assert curves.piecewise((3, 5, 3)).name == "3-5-3 polynomials, C2"
 
 
 @pytest.mark.parametrize(
@@ -117,24 +106,24 @@ def test_declarations_compare_by_value() -> None:
     ],
 )
 def test_cubic_splines_are_named_by_ends(ends: tuple[tuple[int, float], ...], name: str) -> None:
-    assert cubic_spline(5, ends).name == name
+    assert curves.cubic_spline(5, ends).name == name
 
 
 FIRST, LAST = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7)
-APART = cubic_spline(3, ((1, FIRST),), finish=((1, LAST),))
+APART = curves.cubic_spline(3, ((1, FIRST),), finish=((1, LAST),))
 
 
 def test_joints_that_agree_share_one_value() -> None:
-    same = cubic_spline(3, ((1, (0.5, 0.5, 0.5)),), ((1, [0.0, 0.0, 0.0]),))
-    assert same == cubic_spline(3, ((1, 0.5),), ((1, 0.0),))
+    same = curves.cubic_spline(3, ((1, (0.5, 0.5, 0.5)),), ((1, [0.0, 0.0, 0.0]),))
+    assert same == curves.cubic_spline(3, ((1, 0.5),), ((1, 0.0),))
     assert same.prescribed_joints is None
-    rest = cubic_spline(3, ((1, (0.0, 0.0)),))
-    assert rest == cubic_spline(3)
+    rest = curves.cubic_spline(3, ((1, (0.0, 0.0)),))
+    assert rest == curves.cubic_spline(3)
     assert rest.homogeneous
     assert (APART.prescribed_joints, APART.homogeneous) == (3, False)
     assert hash(APART) == hash(replace(APART))
     assert APART.name == "C2 cubic spline with velocity given at the ends"
-    mixed = cubic_spline(3, ((1, FIRST),), ((2, LAST),)).name
+    mixed = curves.cubic_spline(3, ((1, FIRST),), ((2, LAST),)).name
     assert mixed.endswith("with velocity given at the start, acceleration at the finish")
 
 
@@ -145,6 +134,6 @@ def test_numbers_of_joints_have_to_agree() -> None:
     with pytest.raises(TrajgapError, match="for 3 joints, the way-points have 2"):
         fit(APART, q, [1.0, 1.0, 1.0])
     with pytest.raises(TrajgapError, match="given for 2 and for 3 joints; give one value"):
-        cubic_spline(3, ((1, FIRST),), ((1, (0.1, 0.2)),))
+        curves.cubic_spline(3, ((1, FIRST),), ((1, (0.1, 0.2)),))
     with pytest.raises(TrajgapError, match="values must be finite"):
-        cubic_spline(3, ((1, (0.1, np.nan)),))
+        curves.cubic_spline(3, ((1, (0.1, np.nan)),))

@@ -28,15 +28,11 @@ def test_the_furthest_are_the_largest_of_all_extrema(name: str) -> None:
             reach = furthest(curve, r, errors)
             assert reach.at(curve, 0, j) == min(points, key=lambda e: e.value)
             assert reach.at(curve, 1, j) == max(points, key=lambda e: e.value)
-            near = [(e.value, errors[e.segment, j]) for e in points]
-            assert reach.outer[:, j].tolist() == [
-                min(v - e for v, e in near),
-                max(v + e for v, e in near),
-            ]
-            assert reach.inner[:, j].tolist() == [
-                min(v + e for v, e in near),
-                max(v - e for v, e in near),
-            ]
+            value = np.array([e.value for e in points])
+            blur = np.array([errors[e.segment, j] for e in points])
+            low, high = value - blur, value + blur
+            assert reach.outer[:, j].tolist() == [low.min(), high.max()]
+            assert reach.inner[:, j].tolist() == [high.min(), low.max()]
 
 
 def test_steps_are_those_of_the_pieces_on_both_sides() -> None:

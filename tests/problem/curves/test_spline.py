@@ -9,21 +9,7 @@ import pytest
 from scipy.interpolate import CubicSpline, make_interp_spline
 from support import exact_route
 from support.samples import DECLARATIONS, FREE, sample_problem
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    TrajgapError,
-    cubic_spline,
-    cubic_spline_virtual,
-    extrema,
-    fit,
-    piecewise,
-    quintic_spline,
-    quintic_spline_virtual,
-    septic_spline,
-    three_five_three,
-)
+from trajgap.problem import Interpolant, Limits, Problem, TrajgapError, curves, extrema, fit
 from trajgap.problem.curves import Asked, places_of, refined, right_hand_sides, system
 from trajgap.problem.curves.system import Factors, System, factorise
 
@@ -31,20 +17,26 @@ STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)
 REST2, REST3, REST4 = (tuple((r, 0.0) for r in range(1, n + 1)) for n in (2, 3, 4))
 CURVES = {
-    "cubic": (cubic_spline(7), ((1, 0.0),) * 2),
-    "natural cubic": (cubic_spline(5, ((2, 0.0),)), ((2, 0.0),) * 2),
-    "cubic, slopes": (cubic_spline(4, ((1, FIRST),), ((1, LAST),)), ((1, FIRST), (1, LAST))),
-    "cubic, mixed": (cubic_spline(3, ((1, FIRST),), ((2, BENT),)), ((1, FIRST), (2, BENT))),
-    "cubic, turned": (cubic_spline(3, ((2, LAST),), ((1, FIRST),)), ((2, LAST), (1, FIRST))),
-    "quintic": (quintic_spline(7), (REST2, REST2)),
-    "quintic, moving": (quintic_spline(5, ((1, FIRST), (2, BENT))), (((1, FIRST), (2, BENT)),) * 2),
-    "septic": (septic_spline(5), (REST3, REST3)),
-    "cubic, virtual 2": (cubic_spline_virtual(2), (REST2, REST2)),
-    "cubic, virtual 3": (cubic_spline_virtual(3), (REST2, REST2)),
-    "cubic, virtual 5": (cubic_spline_virtual(5), (REST2, REST2)),
-    "quintic, virtual": (quintic_spline_virtual(6), (REST3, REST3)),
-    "quintic, virtual inside": (quintic_spline(7, virtual=(4, 2), ends=REST3), (REST3, REST3)),
-    "septic, virtual inside": (septic_spline(7, virtual=(3, 5), ends=REST4), (REST4, REST4)),
+    "cubic": (curves.cubic_spline(7), ((1, 0.0),) * 2),
+    "natural cubic": (curves.cubic_spline(5, ((2, 0.0),)), ((2, 0.0),) * 2),
+    "cubic, slopes": (curves.cubic_spline(4, ((1, FIRST),), ((1, LAST),)), ((1, FIRST), (1, LAST))),
+    "cubic, mixed": (curves.cubic_spline(3, ((1, FIRST),), ((2, BENT),)), ((1, FIRST), (2, BENT))),
+    "cubic, turned": (curves.cubic_spline(3, ((2, LAST),), ((1, FIRST),)), ((2, LAST), (1, FIRST))),
+    "quintic": (curves.quintic_spline(7), (REST2, REST2)),
+    "quintic, moving": (
+        curves.quintic_spline(5, ((1, FIRST), (2, BENT))),
+        (((1, FIRST), (2, BENT)),) * 2,
+    ),
+    "septic": (curves.septic_spline(5), (REST3, REST3)),
+    "cubic, virtual 2": (curves.cubic_spline_virtual(2), (REST2, REST2)),
+    "cubic, virtual 3": (curves.cubic_spline_virtual(3), (REST2, REST2)),
+    "cubic, virtual 5": (curves.cubic_spline_virtual(5), (REST2, REST2)),
+    "quintic, virtual": (curves.quintic_spline_virtual(6), (REST3, REST3)),
+    "quintic, virtual inside": (
+        curves.quintic_spline(7, virtual=(4, 2), ends=REST3),
+        (REST3, REST3),
+    ),
+    "septic, virtual inside": (curves.septic_spline(7, virtual=(3, 5), ends=REST4), (REST4, REST4)),
 }
 """Splines, and what holds at either end: one order and value, or several."""
 
@@ -61,10 +53,8 @@ def exact_scaled(
         None if nodal is None else dict(zip(interpolant.free_derivatives, nodal[:, j], strict=True))
     )
     pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h, extra)
-    return [
-        [c * Fraction(float(h[k])) ** p for p, c in enumerate(piece)]
-        for k, piece in enumerate(pieces)
-    ]
+    steps = [Fraction(float(x)) for x in h]
+    return [[c * s**p for p, c in enumerate(one)] for s, one in zip(steps, pieces, strict=True)]
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -132,10 +122,10 @@ def test_coefficients_against_rational_arithmetic(name: str, spread: float) -> N
 
 
 LONG = {
-    "cubic": cubic_spline(16),
-    "quintic": quintic_spline(12),
-    "virtual": cubic_spline_virtual(15),
-    "even degrees": piecewise((4, *(3,) * 10, 4), 2),
+    "cubic": curves.cubic_spline(16),
+    "quintic": curves.quintic_spline(12),
+    "virtual": curves.cubic_spline_virtual(15),
+    "even degrees": curves.piecewise((4, *(3,) * 10, 4), 2),
 }
 """Declarations of a dozen segments and more, whose inverse is found by bands."""
 
@@ -144,7 +134,7 @@ def test_nodal_values_refused() -> None:
     message = r"14 conditions for 18 coefficients; give nodal derivatives of shape \(4, 3\)"
     for nodal in (None, np.zeros((3, 3)), np.zeros((4, 1))):
         with pytest.raises(TrajgapError, match=message):
-            fit(piecewise((5, 5, 5), 2), waypoints(4), [1.0, 1.0, 1.0], nodal)
+            fit(curves.piecewise((5, 5, 5), 2), waypoints(4), [1.0, 1.0, 1.0], nodal)
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(1, 2), (2, 1), (3, 3), (0, 2)])
@@ -191,7 +181,7 @@ def test_singular_is_said(banded: bool, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(np.linalg, "solve", Mock(side_effect=np.linalg.LinAlgError))
     words = r"3-5-3 polynomials: singular for durations \[1. 1. 1.\]"
     with pytest.raises(TrajgapError, match=words):
-        fit(three_five_three(), waypoints(4), [1.0, 1.0, 1.0])
+        fit(curves.three_five_three(), waypoints(4), [1.0, 1.0, 1.0])
 
 
 def test_error_bound_near_a_singular_system() -> None:
@@ -273,7 +263,7 @@ def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.Mo
     q = np.cumsum(waypoints(1001), axis=0)
     h = np.random.default_rng(8).uniform(0.3, 3.0, 1000)
     times = np.concatenate([[0.0], np.cumsum(h)])
-    found, error = refined_coefficients(cubic_spline(1000), q, h)
+    found, error = refined_coefficients(curves.cubic_spline(1000), q, h)
     reference = CubicSpline(times, q, bc_type="clamped").c
     scaled = reference[::-1] * h[None, :, None] ** np.arange(4)[:, None, None]
     size = np.abs(scaled).max()
@@ -300,6 +290,5 @@ def test_gradients_by_bands_are_the_dense_ones(name: str, monkeypatch: pytest.Mo
     np.testing.assert_allclose(adjoint.values(places), values, atol=1e-11 * np.abs(values).max())
     weights = np.random.default_rng(3).normal(size=len(points))
     together = weights @ dense.durations
-    np.testing.assert_allclose(
-        adjoint.weighted(places, weights), together, atol=1e-10 * np.abs(together).max()
-    )
+    loose = 1e-10 * np.abs(together).max()
+    np.testing.assert_allclose(adjoint.weighted(places, weights), together, atol=loose)

@@ -117,10 +117,8 @@ def test_of_sources_that_state_the_same_limit_the_first_counts(seed):
 
 
 def test_a_limit_that_is_said_not_to_be_counts_too(tmp_path):
-    sources = [
-        read_limits(write(tmp_path, "l.yaml", YAML)),
-        read_limits(write(tmp_path, "arm.urdf", ARM)),
-    ]
+    written = (("l.yaml", YAML), ("arm.urdf", ARM))
+    sources = [read_limits(write(tmp_path, name, text)) for name, text in written]
     limits = merge(("wheel", "turn"), sources)
     assert limits.upper.tolist() == [[8.5, 4.0, math.inf, math.inf], [2.0, 2.5, math.inf, 50.0]]
     assert limits.source("turn", "acceleration").endswith("l.yaml")

@@ -65,9 +65,7 @@ def test_the_floor_sums_over_standstills_and_waits_nowhere():
 
 def test_a_break_that_is_reached_at_speed_is_no_standstill():
     """1 rad to a wall at 2 rad/s, and on from rest: nobody says that a motion must stop there."""
-    pieces = PPoly(
-        [[[0.0], [-2.0]], [[1.0], [3.0]], [[0.0], [0.0]], [[0.0], [1.0]]], [0.0, 1.0, 2.0]
-    )
+    pieces = PPoly([[[0.0], [-2.0]], [[1.0], [3.0]], [[0.0], [0.0]], [[0.0], [1.0]]], [0, 1, 2])
     found = check_motion(as_motion(pieces, ("1",)), JointLimits.from_values(("1",), 9.0, 99.0))
     assert found.floor.time == pytest.approx(shortest(2.0, 9.0, 99.0, INF))
 

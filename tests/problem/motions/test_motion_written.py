@@ -8,16 +8,7 @@ import pytest
 import yaml
 from scipy.interpolate import BPoly, CubicSpline, PPoly, make_interp_spline
 from trajgap.nlp import Solution, Status
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    fit,
-    piecewise,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, curves, fit
 from trajgap.problem.motions import (
     JointLimits,
     MotionForm,
@@ -36,7 +27,7 @@ NAMES = ("j1", "j2")
 
 
 def motion():
-    return fit(three_five_three(), WAYPOINTS, H)
+    return fit(curves.three_five_three(), WAYPOINTS, H)
 
 
 @pytest.mark.parametrize("form", MotionForm)
@@ -89,13 +80,13 @@ def test_a_motion_that_starts_later_is_written_from_0():
 
 
 def test_a_solution_gives_its_motion():
-    problem = Problem(WAYPOINTS, Limits(3.0, 9.0), three_five_three(), joints=NAMES)
+    problem = Problem(WAYPOINTS, Limits(3.0, 9.0), curves.three_five_three(), joints=NAMES)
     answer = Solution(problem, Status.CONVERGED, vector=H)
     np.testing.assert_array_equal(answer.trajectory.breaks, motion().breaks)
     rows = answer.sample(0.05)
     assert rows.joints == NAMES
     np.testing.assert_array_equal(rows.position, motion()(rows.time))
-    curve, nodal = piecewise((5, 5)), np.array([[0.4, -0.3], [0.2, 0.1]])
+    curve, nodal = curves.piecewise((5, 5)), np.array([[0.4, -0.3], [0.2, 0.1]])
     free = Problem(WAYPOINTS[:3], Limits(3.0, 9.0), curve, joints=NAMES)
     rows = Solution(free, Status.FEASIBLE, vector=H[:2], nodal=nodal).sample(0.1)
     truth = fit(curve, WAYPOINTS[:3], H[:2], nodal)
@@ -107,7 +98,7 @@ def test_a_solution_gives_its_motion():
 
 
 def test_a_curve_on_a_clock_of_its_own_is_sampled_but_is_no_polynomial():
-    curve = uniform_cubic_b_spline(4, "timed")
+    curve = curves.uniform_cubic_b_spline(4, "timed")
     clocked = fit(curve, WAYPOINTS, [0.8, 1.1, 0.9])
     rows = sampled(clocked, 0.01)
     np.testing.assert_allclose(rows.position[-1], WAYPOINTS[-1], atol=1e-9)
@@ -193,13 +184,11 @@ def test_toppras_answers_are_read_as_they_are(how):
     import toppra
     from toppra import algorithm, constraint
 
-    limits = [
-        constraint.JointVelocityConstraint([2.0, 3.0]),
-        constraint.JointAccelerationConstraint([5.0, 9.0]),
-    ]
+    velocity = constraint.JointVelocityConstraint([2.0, 3.0])
+    acceleration = constraint.JointAccelerationConstraint([5.0, 9.0])
     toppra.setup_logging("ERROR")
     answer = algorithm.TOPPRA(
-        limits, path(), gridpoints=np.linspace(0, 1.3, 60), parametrizer=how
+        [velocity, acceleration], path(), gridpoints=np.linspace(0, 1.3, 60), parametrizer=how
     ).compute_trajectory(0.0, 0.0)
     motion = as_motion(answer)
     assert motion.total_time == pytest.approx(answer.duration)

@@ -149,9 +149,7 @@ def test_a_profile_of_third_order_has_its_own_speed_and_acceleration(motions, be
 def test_stationary_ends_of_a_profile_are_cubic(motions):
     """s = size·t³ up to the first station, and its mirror image at the end."""
     stations = np.array([0.0, 0.2, 0.8, 1.0])
-    profile = SimpleNamespace(
-        a=np.array([0.0, 1.0, 1.0, 0.0]), b=np.zeros(4), num_stationary=(1, 1)
-    )
+    profile = SimpleNamespace(a=np.array([0.0, 1, 1, 0]), b=np.zeros(4), num_stationary=(1, 1))
     times = np.array([0.0, 0.6, 1.2, 1.8])  # 3·0.2/√1, 0.6/√1, 3·0.2/√1
     line = PPoly(np.array([[[1.0]], [[0.0]]]), [0.0, 1.0])
     motion = motions.third_order(line, stations, profile, times)

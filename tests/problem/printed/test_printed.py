@@ -20,9 +20,7 @@ from trajgap.problem.printed.units import (
     to_si,
 )
 
-decimals = st.decimals(
-    min_value=-1000, max_value=1000, allow_nan=False, allow_infinity=False, places=9
-)
+decimals = st.decimals(-1000, 1000, allow_nan=False, allow_infinity=False, places=9)
 places = st.integers(min_value=0, max_value=6)
 
 
@@ -72,10 +70,8 @@ def test_any_minus_sign_is_read(minus):
     printed = Printed(f" {minus}1.6336 ")
     assert printed == Printed("-1.6336")
     assert printed.value == -1.6336
-    assert (printed.lower, printed.upper) == (
-        down(Fraction(-163365, 100000)),
-        up(Fraction(-163355, 100000)),
-    )
+    assert printed.lower == down(Fraction(-163365, 100000))
+    assert printed.upper == up(Fraction(-163355, 100000))
 
 
 def test_an_exact_number_has_no_width():

@@ -6,15 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from support.benchmarks import benchmark
-from trajgap.problem import (
-    control_vertices,
-    extrema,
-    fit,
-    jtraj,
-    load_case,
-    three_five_three,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import curves, extrema, fit, load_case
 
 Numbers = list[float]
 Array = NDArray[np.float64]
@@ -41,7 +33,7 @@ def test_the_14_conditions_give_the_curve(case_id: str, claim: str) -> None:
     case = load_case(case_id)
     h = [number.value for number in case.claim(claim).durations]
     problem = case.problem(case.claim(claim).problem)
-    motion = fit(three_five_three(), problem.waypoints, h)
+    motion = fit(curves.three_five_three(), problem.waypoints, h)
     for joint, q in enumerate(problem.waypoints.T):
         a = np.concatenate(coefficients(q, *h))
         for t in np.linspace(0.0, sum(h) * (1 - 1e-12), 37):
@@ -85,13 +77,13 @@ def test_vertices_speeds_and_the_golden_section() -> None:
     """Peaks here are exact; those of the printed search never exceed them, and meet them."""
     case = load_case(POLISH)
     q = case.problem().waypoints
-    curve = uniform_cubic_b_spline(10, "stretched")
+    curve = curves.uniform_cubic_b_spline(10, "stretched")
     for claim in ("before", "after"):
         h = [number.value for number in case.claim(claim).durations]
         motion = fit(curve, q, h)
         for joint in range(6):
             v = vertices(q[:, joint].tolist())
-            np.testing.assert_allclose(v, control_vertices(q)[:, joint], rtol=0, atol=1e-12)
+            np.testing.assert_allclose(v, curves.control_vertices(q)[:, joint], rtol=0, atol=1e-12)
             for order in (1, 2):
                 found = []
                 for i, length in enumerate(h):
@@ -115,7 +107,7 @@ def test_vertices_speeds_and_the_golden_section() -> None:
 def test_the_quintic_at_rest_of_the_toolbox() -> None:
     """q(τ) = q0 + (10 τ³ − 15 τ⁴ + 6 τ⁵) (q1 − q0), from rest to rest on each segment."""
     q, h = np.random.default_rng(3).normal(size=(4, 2)), [0.7, 1.3, 0.4]
-    motion, start = fit(jtraj(3), q, h), 0.0
+    motion, start = fit(curves.jtraj(3), q, h), 0.0
     for i, length in enumerate(h):
         for x in np.linspace(0.0, 1.0 - 1e-12, 9):
             part = 10 * x**3 - 15 * x**4 + 6 * x**5

@@ -105,9 +105,7 @@ def test_batches_lead():
 
 def test_span_is_one_turn_where_a_joint_is_free():
     inf = np.inf
-    chain = Chain(
-        S, [1, 1, 1, 1], [0] * 4, [0] * 4, lower=[-inf, 0.5, -inf, -1], upper=[inf, inf, 2, 9]
-    )
+    chain = Chain(S, [1] * 4, [0] * 4, [0] * 4, lower=[-inf, 0.5, -inf, -1], upper=[inf, inf, 2, 9])
     lower, upper = chain.span()
     np.testing.assert_allclose(lower, [-np.pi, 0.5, 2 - 2 * np.pi, -1])
     np.testing.assert_allclose(upper, [np.pi, 0.5 + 2 * np.pi, 2, 9])

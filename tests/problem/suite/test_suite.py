@@ -136,11 +136,9 @@ def test_a_malformed_row_is_refused() -> None:
 def test_a_case_is_loaded_by_its_name_in_the_suite_or_the_nearest_is_said() -> None:
     assert load_case("suite:353-puma560").problem().segments == 3
     assert load_instance("suite:353-puma560") == load_instance("353-puma560")
+    loaders = (load_instance, "", TrajgapError), (load_case, "suite:", CaseError)
     for name, said in (("353-puma56", "did you mean '{}353-puma560'?"), ("q", "lists them")):
-        for load, prefix, error in (
-            (load_instance, "", TrajgapError),
-            (load_case, "suite:", CaseError),
-        ):
+        for load, prefix, error in loaders:
             with pytest.raises(error, match=re.escape(said.format(prefix)) + "$"):
                 load(prefix + name)
 
@@ -185,10 +183,8 @@ def prove(name: str) -> None:
     verdict = verify_certificate(document, seconds=600)
     assert verdict.proves, verdict.reason
     assert (verdict.altered, verdict.subject) == (False, subject)
-    assert (verdict.problem_hash, verdict.question.case_sha256) == (
-        one.problem_hash,
-        one.case_sha256,
-    )
+    assert verdict.problem_hash == one.problem_hash
+    assert verdict.question.case_sha256 == one.case_sha256
     assert verdict.lower is not None
     assert Fraction(repr(one.lower)) <= verdict.lower
     assert one.lower == pytest.approx(float(verdict.lower), rel=1e-10)

@@ -6,16 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 from support.made_up import algorithms, entry, paper, readings
-from support.papers.motions import (
-    FAMILIES,
-    Array,
-    Family,
-    Motion,
-    NoCurveError,
-    ratios,
-    shortest_apart,
-    stretch,
-)
+from support.papers import motions
 from support.papers.printing import ANGLES, ORDERS, TIMES, last_place, places_for, printed
 from support.toml_text import Bare
 
@@ -27,8 +18,8 @@ TIGHT = 1e-9
 class Answer:
     """Durations in seconds and their motion, all joints together or one alone."""
 
-    durations: Array
-    motion: Motion
+    durations: motions.Array
+    motion: motions.Motion
     joint: int | None = None
 
     @property
@@ -46,14 +37,14 @@ class Draft:
 
     seed: int
     name: str
-    family: Family
+    family: motions.Family
     units: dict[str, str]
     points: list[list[str]]
-    true_points: Array
+    true_points: motions.Array
     limits: dict[int, list[str]]
     exact_points: bool
     exact_limits: bool
-    true_limits: dict[int, Array]
+    true_limits: dict[int, motions.Array]
     places: int
     how: str
     coupling: str = "shared"
@@ -117,7 +108,7 @@ class Draft:
 
 
 def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
-    family = FAMILIES[name]
+    family = motions.FAMILIES[name]
     count, joints = int(rng.choice(family.points)), int(rng.integers(1, 4))
     main = str(rng.choice(["deg", "rad"]))
     units = {"position": main}
@@ -136,13 +127,13 @@ def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
     if how == "exact":
         true = np.array([[float(t) for t in row] for row in rows]).T
     if (np.ptp(np.array([[float(t) for t in row] for row in rows]), axis=1) == 0).any():
-        raise NoCurveError("a joint stands still")
+        raise motions.NoCurveError("a joint stands still")
 
     orders = [(1, 2), (1, 2), (1, 2, 3), (2,), (1,), (1, 3)][int(rng.integers(6))]
     if family.smooth < 2:
         orders = tuple(o for o in orders if o < 3) or (1,)
     limits: dict[int, list[str]] = {}
-    true_limits: dict[int, Array] = {}
+    true_limits: dict[int, motions.Array] = {}
     exact_limits = bool(rng.random() < 0.6)
     off = not exact_limits and rng.random() < 0.5
     for order in orders:
@@ -175,30 +166,30 @@ def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
     )
 
 
-def fitted(draft: Draft, durations: Array, joint: int | None = None) -> Motion:
+def fitted(draft: Draft, durations: motions.Array, joint: int | None = None) -> motions.Motion:
     """The true motion of durations, of all joints or of one."""
     points = draft.true_points if joint is None else draft.true_points[:, [joint]]
     return draft.family.fit(points, durations)
 
 
-def limits_of(draft: Draft, joint: int | None) -> dict[int, Array]:
+def limits_of(draft: Draft, joint: int | None) -> dict[int, motions.Array]:
     """True limits, of all joints or of one."""
     if joint is None:
         return draft.true_limits
     return {order: row[[joint]] for order, row in draft.true_limits.items()}
 
 
-def answer(draft: Draft, shape: Array, slack: float, joint: int | None = None) -> Answer:
+def answer(draft: Draft, shape: motions.Array, slack: float, joint: int | None = None) -> Answer:
     """Durations in given proportions that keep the limits and nearly reach one."""
-    factor = stretch(fitted(draft, shape, joint), limits_of(draft, joint)) * (1 + slack)
+    factor = motions.stretch(fitted(draft, shape, joint), limits_of(draft, joint)) * (1 + slack)
     durations = shape * factor
     return Answer(durations, fitted(draft, durations, joint), joint)
 
 
-def keeps(draft: Draft, durations: Array, joint: int | None = None) -> bool:
+def keeps(draft: Draft, durations: motions.Array, joint: int | None = None) -> bool:
     """Whether a motion keeps its limits."""
     motion = fitted(draft, durations, joint)
-    return max(ratios(motion, limits_of(draft, joint)).values()) <= 1.0
+    return max(motions.ratios(motion, limits_of(draft, joint)).values()) <= 1.0
 
 
 def shortest(draft: Draft, joint: int | None = None) -> Answer | None:
@@ -206,7 +197,9 @@ def shortest(draft: Draft, joint: int | None = None) -> Answer | None:
     points = draft.true_points if joint is None else draft.true_points[:, [joint]]
     limits = limits_of(draft, joint)
     if draft.family.apart:
-        durations = shortest_apart(draft.family, points, limits, draft.segments) * (1 + TIGHT)
+        durations = motions.shortest_apart(draft.family, points, limits, draft.segments) * (
+            1 + TIGHT
+        )
         return Answer(durations, fitted(draft, durations, joint), joint)
     if draft.segments != 2:
         return None
@@ -214,8 +207,8 @@ def shortest(draft: Draft, joint: int | None = None) -> Answer | None:
     def total(logarithm: float) -> float:
         shape = np.array([1.0, np.exp(logarithm)])
         try:
-            return float(shape.sum() * stretch(draft.family.fit(points, shape), limits))
-        except NoCurveError:
+            return float(shape.sum() * motions.stretch(draft.family.fit(points, shape), limits))
+        except motions.NoCurveError:
             return np.inf
 
     grid = np.linspace(-2.5, 2.5, 26)
@@ -231,7 +224,7 @@ def shortest(draft: Draft, joint: int | None = None) -> Answer | None:
     return answer(draft, np.array([1.0, np.exp(best[1])]), TIGHT, joint)
 
 
-def some_shape(rng: np.random.Generator, draft: Draft) -> Array:
+def some_shape(rng: np.random.Generator, draft: Draft) -> motions.Array:
     """Proportions of durations."""
     return np.exp(rng.normal(0, 0.2, draft.segments))
 

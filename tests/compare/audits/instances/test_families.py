@@ -40,10 +40,7 @@ WHALE = "z1-woa-bspline"
 
 SMALL = (ROOT / "tests/support/family.toml").read_text("utf-8")
 
-UNSOLVED = (
-    ("upper = 8", "upper = 0.05"),
-    ("position_initial = [0, 8]", "position_initial = [0, 0.05]"),
-)
+UNSOLVED = (("upper = 8", "upper = 0.05"), ("initial = [0, 8]", "initial = [0, 0.05]"))
 """Changes after which nothing keeps its limits."""
 
 
@@ -113,9 +110,8 @@ def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: InstancesRe
         assert two.slower.total == pytest.approx(one.slower.total / 2, rel=1e-9)
         assert two.faster.total == pytest.approx(one.faster.total / 2, rel=1e-9)
     for effect in (Effect.BOTH, Effect.ALGORITHM):
-        np.testing.assert_array_equal(
-            twice.reductions("as-printed", effect), result.reductions("as-printed", effect)
-        )
+        one, two = (runs.reductions("as-printed", effect) for runs in (result, twice))
+        np.testing.assert_array_equal(two, one)
 
 
 def test_optima_against_a_scan_of_the_shares(result: InstancesResult) -> None:
@@ -171,10 +167,8 @@ def made(before: list[float], after: list[float], printed: tuple[float, float]) 
     sample = Sample(
         "as-printed", 0.3, 0, np.zeros((3, 2)), *known, totals, np.zeros(totals.shape, np.intp)
     )  # fmt: skip
-    sides = [
-        Procedure(problem="stops", algorithm="plain"),
-        Procedure(problem="spline", algorithm="new"),
-    ]
+    asked = (("stops", "plain"), ("spline", "new"))
+    sides = [Procedure(problem=problem, algorithm=name) for problem, name in asked]
     return InstancesResult(block, *sides, printed, ("as-printed",), 12, (sample,))
 
 
@@ -297,9 +291,8 @@ def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
     shown = np.sort(points[:, 0])
     values = [result.reductions(r, Effect.BOTH, at) for r in result.readings for at in (0, 1)]
     np.testing.assert_allclose(shown, np.sort(100 * np.concatenate(values)), rtol=1e-12)
-    assert [t.get_text() for t in both.get_yticklabels()] == [
-        result.label(reading) for reading in result.readings
-    ]
+    labels = [result.label(reading) for reading in result.readings]
+    assert [t.get_text() for t in both.get_yticklabels()] == labels
     assert sum(len(c.get_offsets()) for c in curve.collections) == len(result.samples)
     assert alone.get_title(loc="left") == "algorithm alone"
     assert "as-printed: both together median" in picture.description

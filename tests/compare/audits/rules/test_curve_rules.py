@@ -41,9 +41,8 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 def vertices_on(curve: dict[str, Any], *more: str) -> list[Finding]:
     """Of four way-points, and vertices that are those of no uniform cubic B-spline."""
-    stated = claim(
-        "v", "control_vertices", joint_rows=[["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
-    )
+    own = ["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]
+    stated = claim("v", "control_vertices", joint_rows=[own])
     text = paper(["0.1 1.2 -0.4 0.7"], stated, *more, curve=curve, velocity=3)
     return judged(study_of(text), "TG205")
 
@@ -119,9 +118,8 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     centred, highest = own.get(time, (centred_timed, 2))
     orders = range(1, highest + 1)
     points = [e for j in range(3) for r in orders for e in extrema(trajectory, j, r)]
-    joint, segment, order = (
-        np.array([getattr(e, name) for e in points]) for name in ("joint", "segment", "order")
-    )
+    names = ("joint", "segment", "order")
+    joint, segment, order = (np.array([getattr(e, key) for e in points]) for key in names)
     place = np.array([e.s for e in points])
     wide_h, wide_q = Ball(h, 0.01 * h), Ball(q, np.full_like(q, 5e-5))
     form = centred(len(q), joint, segment, order, place, wide_h, wide_q)

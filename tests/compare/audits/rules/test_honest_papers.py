@@ -220,12 +220,8 @@ def test_two_that_print_the_optimum(times: str, value: str, tail: str, severity:
     [
         # 2 rad in 3 s peak at 1.25 rad/s exactly.
         ("1.2500", "3.00000", "supported", "equal within the rounding"),
-        (
-            "1.2492",
-            "3.00000",
-            "supported",
-            "as sampling the motion would give",
-        ),  # 50 samples: 1.2490
+        # 50 samples give 1.2490.
+        ("1.2492", "3.00000", "supported", "as sampling the motion would give"),
         ("1.2489", "3.00000", "supported", "as sampling the motion would give"),
         ("1.2510", "3.00000", "inconsistent", "was found to explain the difference"),
         ("0.625", "3.00000", "inconsistent", "was found to explain the difference"),

@@ -74,9 +74,8 @@ def test_a_row_is_judged_under_both_conventions(
     found = judged(limit=limit, **keys)
     assert found.verdict == verdict
     assert said in found.message
-    assert ("not compared with the optimum" in found.message) == (
-        "straight segments" not in found.message
-    )
+    built = "straight segments" not in found.message
+    assert ("not compared with the optimum" in found.message) == built
 
 
 def test_a_row_of_which_nothing_is_said_is_refuted_by_no_limit() -> None:
@@ -145,9 +144,8 @@ def test_a_sentence_on_several_rows_speaks_of_this_one_too(
     """The own row is slow enough; what is said of all rows hangs on the blended one."""
     checks = {"all": "within_limits", "rest": "at_rest", "smooth": "continuous"}
     said = (sentence(name, check, "own", "row") for name, check in checks.items())
-    found = verdicts(
-        audited_text(made_up(row("own", "9.00 9.00 9.00"), *said, limit=limit, **keys))
-    )
+    text = made_up(row("own", "9.00 9.00 9.00"), *said, limit=limit, **keys)
+    found = verdicts(audited_text(text))
     assert found["all"] == verdict
     assert found["rest"] == found["smooth"] == OPEN
 
@@ -169,9 +167,8 @@ def test_the_example_of_craig() -> None:
     The book rounds the first blend to 0.27 s and the speed to 13.50; its straight parts take
     1.50 and 2.849 s.
     """
-    found = blended_motion(
-        column(10, 35, 25, 10), exact(2, 1, 3), EndBlends.WITHIN, accelerations=exact(50)
-    )
+    way, times = column(10, 35, 25, 10), exact(2, 1, 3)
+    found = blended_motion(way, times, EndBlends.WITHIN, accelerations=exact(50))
     speeds = found.velocity.low[:, 0]
     assert speeds == pytest.approx([13.40, -10.0, -5.09], abs=0.005)
     assert speeds[0] / 50 == pytest.approx(0.27, abs=0.005)
@@ -192,9 +189,7 @@ def moved(points: Array, durations: Array, blends: Array, ends: EndBlends) -> Ar
     return np.array([at])
 
 
-@given(
-    st.lists(st.floats(-3, 3), min_size=2, max_size=5), st.data(), st.sampled_from(list(EndBlends))
-)
+@given(st.lists(st.floats(-3, 3), min_size=2, max_size=5), st.data(), st.sampled_from(EndBlends))
 def test_such_a_motion_ends_at_the_last_way_point(
     points: list[float], data: st.DataObject, ends: EndBlends
 ) -> None:
@@ -204,7 +199,7 @@ def test_such_a_motion_ends_at_the_last_way_point(
     assert moved(np.array(points), h, tau, ends) == pytest.approx([points[-1]], abs=1e-12)
 
 
-@given(st.data(), st.sampled_from(list(EndBlends)))
+@given(st.data(), st.sampled_from(EndBlends))
 def test_bounds_hold_for_everything_in_the_boxes(data: st.DataObject, ends: EndBlends) -> None:
     n = data.draw(st.integers(1, 3))
     value = st.floats(-2, 2)

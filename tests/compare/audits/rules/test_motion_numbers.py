@@ -203,9 +203,8 @@ def test_one_number_of_several_joints_may_be_their_norm_largest_mean_or_sum() ->
 def test_a_number_agrees_as_far_as_its_digits_and_those_of_the_motion_reach(
     exact: float, reach: float, far: float, sampled: float, said: str
 ) -> None:
-    one = Beside(
-        Printed("2.0"), (1.95, 2.05), (1.95, 2.1), exact, reach, far, (sampled, sampled), "rad"
-    )
+    room = (1.95, 2.05), (1.95, 2.1)
+    one = Beside(Printed("2.0"), *room, exact, reach, far, (sampled, sampled), "rad")
     assert one.kind == said
     assert one.fits is (said != "off")
 

@@ -74,15 +74,13 @@ def of_half_sines(ramp: float, held: float, cruise: float, jerk: float) -> np.nd
     [(0.31, 0.52, 0.77), (0.31, 0.52, 0.0), (0.31, 0.0, 0.77), (0.31, 0.0, 0.0)],
 )
 def test_half_sines_are_a_jerk_smaller_by_half_pi(ramp: float, held: float, cruise: float) -> None:
-    way, velocity, acceleration = of_half_sines(ramp, held, cruise, 9.0)
+    peaks = of_half_sines(ramp, held, cruise, 9.0)
     total = 4 * ramp + 2 * held + cruise
-    assert sine_jerk(way, velocity, acceleration, 9.0) == pytest.approx(total, rel=1e-9)
+    assert sine_jerk(*peaks, 9.0) == pytest.approx(total, rel=1e-9)
     # One limit larger lets it be no longer; all larger, shorter.
-    assert sine_jerk(way, velocity, acceleration, 9.9) < total
-    assert sine_jerk(way, velocity, acceleration, 9.0) > s_curve(way, velocity, acceleration, 9.0)
-    assert sine_jerk(way, velocity, acceleration, np.inf) == trapezoidal(
-        way, velocity, acceleration, np.inf
-    )
+    assert sine_jerk(*peaks, 9.9) < total
+    assert sine_jerk(*peaks, 9.0) > s_curve(*peaks, 9.0)
+    assert sine_jerk(*peaks, np.inf) == trapezoidal(*peaks, np.inf)
 
 
 def test_joints_on_a_straight_line_share_one_time_law() -> None:
@@ -250,13 +248,9 @@ def test_an_acceleration_may_be_that_of_either_side(time: str, value: str, verdi
     assert finding(text, "v", "TG304").verdict == verdict
 
 
-STRAIGHT = {"profile": "trapezoidal", "path": "straight"}
-"""How the profile of several joints is stated."""
-
-
 def of_profile(value: Numbers, asked: dict[str, Any], own: dict[str, Any]) -> Finding:
     """The finding on a peak velocity of the profile of two joints on a straight line."""
-    printed = total("t", own.pop("total", "2.17"), **STRAIGHT, **CLAIM | own)
+    printed = total("t", own.pop("total", "2.17"), profile="trapezoidal", **STRAIGHT, **CLAIM | own)
     top = peak("p", "t", "velocity", value, **asked)
     text = paper([[0, 1], [0, -3]], printed, top, curve=QUINTIC, velocity=2, acceleration=[1, 4])
     return finding(text, "p", "TG304")
@@ -288,9 +282,8 @@ def test_a_peak_of_a_joint_that_the_profile_lacks_is_not_checkable() -> None:
 
 def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
     own = total("t", "1.0", profile="trapezoidal", problem="one", **CLAIM)
-    text = paper(
-        [[0, 1]], own, peak("p", "t", "velocity", "2.0"), curve=QUINTIC, velocity=2, acceleration=4
-    )
+    top = peak("p", "t", "velocity", "2.0")
+    text = paper([[0, 1]], own, top, curve=QUINTIC, velocity=2, acceleration=4)
     with pytest.raises(CaseError, match="'t' belongs to another problem"):
         parse_case(text, "made-up.toml")
 

@@ -307,10 +307,6 @@ def test_one_table_does_not_say_how_two_totals_differ() -> None:
 @pytest.mark.parametrize(("percent", "follows"), [("27.1", True), ("25.0", False)])
 def test_a_percentage_of_whole_numbers_beside_totals_cut_off(percent: str, follows: bool) -> None:
     """2.5110 and 1.8315 s, whose parts are cut off and then added up: 27.06 % beside 27.89 %."""
-    parts = (0.9803, 0.8704, 0.6603), (0.6579, 0.6468, 0.5268)
-    slow, fast = (sum(each) for each in parts)
-    assert f"{100 * (1 - fast / slow):.1f}" == "27.1"
-    assert 100 * (1 - 1.815 / 2.51) > 27.6 > 100 * (1 - 1.82 / 2.52) - 0.2
     tail = (
         row("slow", "0.98 0.87 0.66", total="2.51", state="before")
         + row("fast", "0.65 0.64 0.52", total="1.81")

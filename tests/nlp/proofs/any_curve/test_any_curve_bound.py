@@ -13,22 +13,11 @@ from trajgap.nlp.clock import stopping_after
 from trajgap.nlp.proofs.any_curve import estimate
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.reach import furthest, profile, reachable
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    cubic_spline,
-    cubic_spline_virtual,
-    quintic_spline,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, curves
 
 
 def with_ends(q: list[float], start: float, last: float, limits: Limits) -> Problem:
-    return Problem(
-        np.array(q)[:, None], limits, cubic_spline(len(q) - 1, ((1, start),), ((1, last),))
-    )
+    return Problem(q, limits, curves.cubic_spline(len(q) - 1, ((1, start),), ((1, last),)))
 
 
 def between(step: float, first: float, last: float, a: float) -> float:
@@ -77,7 +66,7 @@ CLOSED = [
         Problem(
             np.array([[0.0, 3.0], [1.3, 4.3]]),
             Limits(50.0, 4.0, joints=2),
-            cubic_spline(1, ((1, (0.6, -0.4)),), ((1, 0.0),)),
+            curves.cubic_spline(1, ((1, (0.6, -0.4)),), ((1, 0.0),)),
         ),
         between(1.3, -0.4, 0.0, 4.0),
     ),
@@ -94,13 +83,13 @@ def test_a_closed_form_is_found_and_proved(problem: Problem, total: float) -> No
 
 def test_rest_at_waypoints_of_the_interpolant_is_not_asked_for() -> None:
     smooth = estimate_any_curve(PUMA_PROBLEM)
-    stopping = estimate_any_curve(replace(PUMA_PROBLEM, curve=rest_to_rest(3, 5)))
+    stopping = estimate_any_curve(replace(PUMA_PROBLEM, curve=curves.rest_to_rest(3, 5)))
     assert stopping.total_time == pytest.approx(smooth.total_time, rel=1e-9)
 
 
 def test_velocity_limits_only() -> None:
     velocity = np.array([1.5, 0.4, 2.0, 3.0, 0.7, 1.1])
-    found = estimate_any_curve(Problem(PUMA, Limits(velocity), three_five_three()))
+    found = estimate_any_curve(Problem(PUMA, Limits(velocity), curves.three_five_three()))
     expected = (np.abs(np.diff(PUMA, axis=0)) / velocity).max(axis=1)
     assert found.durations == pytest.approx(expected, rel=1e-15)
     assert found.total_time == pytest.approx(expected.sum(), rel=1e-15)
@@ -178,7 +167,7 @@ def test_duration_bounds_hold_between_waypoints() -> None:
 
 
 def test_virtual_breaks_are_merged() -> None:
-    virtual = Problem(PUMA, PUMA_PROBLEM.limits, cubic_spline_virtual(4))
+    virtual = Problem(PUMA, PUMA_PROBLEM.limits, curves.cubic_spline_virtual(4))
     found = estimate_any_curve(virtual)
     assert found.durations.shape == (3,)
     assert found.total_time == pytest.approx(estimate_any_curve(PUMA_PROBLEM).total_time, rel=1e-9)
@@ -259,7 +248,9 @@ def test_position_limits_that_are_kept_change_nothing() -> None:
     q = np.array([[0.0, 0.0], [1.0, 0.5], [0.2, 1.0]])
     wide = Limits(5.0, 8.0, position_lower=-1.0, position_upper=2.0, joints=2)
     free = Limits(5.0, 8.0, joints=2)
-    one, two = (estimate_any_curve(Problem(q, limits, cubic_spline(2))) for limits in (wide, free))
+    one, two = (
+        estimate_any_curve(Problem(q, limits, curves.cubic_spline(2))) for limits in (wide, free)
+    )
     assert one.total_time == pytest.approx(two.total_time, rel=1e-12)
 
 
@@ -272,7 +263,7 @@ def test_starts_of_the_wrong_shape() -> None:
 
 def test_curves_through_the_same_waypoints_share_a_search(monkeypatch: pytest.MonkeyPatch) -> None:
     q = np.array([[0.13, 0.4], [0.81, -0.1], [0.32, -1.5], [1.07, 0.6]])
-    problem = Problem(q, Limits([1.6, 1.2], [4.0, 3.0]), cubic_spline(3))
+    problem = Problem(q, Limits([1.6, 1.2], [4.0, 3.0]), curves.cubic_spline(3))
     searched, search = [], estimate.local_optimum
     monkeypatch.setattr(
         estimate, "local_optimum", lambda *asked: searched.append(asked) or search(*asked)
@@ -280,7 +271,7 @@ def test_curves_through_the_same_waypoints_share_a_search(monkeypatch: pytest.Mo
     estimate._kept.cache_clear()
     first = estimate_any_curve(problem, starts=2)
     assert len(searched) == 2
-    other = estimate_any_curve(replace(problem, curve=quintic_spline(3)), starts=2)
+    other = estimate_any_curve(replace(problem, curve=curves.quintic_spline(3)), starts=2)
     assert len(searched) == 2
     assert other.durations.tobytes() == first.durations.tobytes()
     # Whatever else differs is another question, and a limited time keeps nothing.

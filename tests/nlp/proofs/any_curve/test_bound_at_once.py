@@ -113,9 +113,8 @@ def test_an_infimum_has_one():
 
 
 def test_the_unit_of_the_printed_numbers_changes_nothing():
-    statement = load_case("irb1600-ga-cubic-bspline").statement(
-        "nine-segments", "angles-deg-v-deg-a-deg-timed"
-    )
+    case, reading = load_case("irb1600-ga-cubic-bspline"), "angles-deg-v-deg-a-deg-timed"
+    statement = case.statement("nine-segments", reading)
     assert statement.unit("position", 0) == "deg"
     exact, problem = printed_problem(statement), statement.problem()
     found = solve(problem, exact=exact), solve(problem)

@@ -13,19 +13,7 @@ from trajgap.nlp.proofs.document import certificate, fits
 from trajgap.nlp.proofs.evidence import interval_of, printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    Verdict,
-    check,
-    cubic_spline,
-    parse_case,
-    piecewise,
-    rest_to_rest,
-    solve_in_closed_form,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, Verdict, check, curves, parse_case
 from trajgap.verify import Subject, verify_certificate as verify
 
 Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
@@ -41,7 +29,10 @@ CLOSED = {
     # A cubic's acceleration jumps at the way-points, which no jerk limit survives.
     **{
         f"rest to rest {degree}": Problem(
-            Q, Limits([1.1, 0.8], [2.0, np.inf], jerk), rest_to_rest(3, degree), (0.2, 0.2, 3.4)
+            Q,
+            Limits([1.1, 0.8], [2.0, np.inf], jerk),
+            curves.rest_to_rest(3, degree),
+            (0.2, 0.2, 3.4),
         )
         for degree, jerk in ((3, np.inf), (5, [np.inf, 9.0]), (7, [np.inf, 9.0]), (9, [9.0, 9.0]))
     },
@@ -61,13 +52,13 @@ def test_it_is_proved_to_the_last_digits(name: str) -> None:
 
 
 def test_a_bound_on_a_duration_may_ask_for_most() -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), [0.0, 8.75, 0.0], ratios=RATIOS)
+    problem = Problem(Q, LIMITS, curves.cubic_spline(3), [0.0, 8.75, 0.0], ratios=RATIOS)
     found = certify(problem)
     assert found.lower == found.upper == 20
 
 
 def test_a_proof_of_one_question_is_none_of_the_other() -> None:
-    fixed = Problem(Q, LIMITS, rest_to_rest(3, 5), ratios=RATIOS)
+    fixed = Problem(Q, LIMITS, curves.rest_to_rest(3, 5), ratios=RATIOS)
     free = replace(fixed, ratios=None)
     own, other = (certificate(certify(one)) for one in (fixed, free))
     assert fits(own, exact_problem(fixed), Subject.DECLARED)
@@ -80,7 +71,7 @@ def test_a_proof_of_one_question_is_none_of_the_other() -> None:
 
 
 def test_any_curve_is_bounded_whatever_the_ratios() -> None:
-    fixed = Problem(Q[:3], Limits([1.0, 0.9], [2.0, 1.5]), cubic_spline(2), ratios=[1, 3])
+    fixed = Problem(Q[:3], Limits([1.0, 0.9], [2.0, 1.5]), curves.cubic_spline(2), ratios=[1, 3])
     found = certify(fixed, subject=Subject.ANY, gap=0.5, seconds=20)
     free = replace(fixed, ratios=None)
     assert fits(certificate(found), exact_problem(free), Subject.ANY)
@@ -140,11 +131,11 @@ def test_chord_lengths_of_several_joints_are_not_rational() -> None:
 
 
 JUMPS = {
-    "lines, jerk": (piecewise((1, 1), 0, ()), (np.inf, np.inf, 1.0)),
-    "lines, acceleration": (piecewise((1, 1), 0, ()), (np.inf, 1.0, np.inf)),
-    "lines, velocity": (piecewise((1, 1), 0, ()), (2.0, np.inf, np.inf)),
-    "cubics, jerk": (piecewise((3, 3), 0, ((1, 0.0), (2, 0.0))), (np.inf, np.inf, 40.0)),
-    "rest to rest, jerk": (rest_to_rest(2, 3), (np.inf, np.inf, 40.0)),
+    "lines, jerk": (curves.piecewise((1, 1), 0, ()), (np.inf, np.inf, 1.0)),
+    "lines, acceleration": (curves.piecewise((1, 1), 0, ()), (np.inf, 1.0, np.inf)),
+    "lines, velocity": (curves.piecewise((1, 1), 0, ()), (2.0, np.inf, np.inf)),
+    "cubics, jerk": (curves.piecewise((3, 3), 0, ((1, 0.0), (2, 0.0))), (np.inf, np.inf, 40.0)),
+    "rest to rest, jerk": (curves.rest_to_rest(2, 3), (np.inf, np.inf, 40.0)),
 }
 
 
@@ -178,7 +169,7 @@ def random_problem(seed: int) -> Problem:
     some[rng.integers(0, 3)] = True
     v, a, j = (scale[i] if some[i] else np.full(joints, np.inf) for i in range(3))
     lower = rng.uniform(0.1, 1.5, count - 1) if rng.random() < 0.4 else 0.0
-    return Problem(q, Limits(v, a, j), uniform_cubic_b_spline(count, "stretched"), lower)
+    return Problem(q, Limits(v, a, j), curves.uniform_cubic_b_spline(count, "stretched"), lower)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -187,7 +178,9 @@ def test_the_interval_holds_the_closed_form(seed: int) -> None:
     found = certify(problem)
     assert found.outcome is Outcome.CERTIFIED
     assert found.gap < 1e-11
-    durations = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+    durations = curves.solve_in_closed_form(
+        problem.curve, problem.waypoints, problem.limits.derivatives
+    )
     best = float(np.maximum(durations, problem.duration_lower).sum())
     assert float(found.lower) <= best * (1 + 1e-12)
     assert float(found.upper) >= best * (1 - 1e-12)
@@ -199,7 +192,7 @@ def test_the_interval_holds_the_closed_form(seed: int) -> None:
 def test_positions_are_judged() -> None:
     # It overshoots its highest way-point, whatever the durations.
     q = np.array([[0.0], [1.0], [0.9], [0.0]])
-    curve = uniform_cubic_b_spline(4, "stretched")
+    curve = curves.uniform_cubic_b_spline(4, "stretched")
     tight = Problem(q, Limits(1.0, position_upper=1.0), curve)
     assert certify(tight).outcome is Outcome.OPEN
     wide = certify(Problem(q, Limits(1.0, position_upper=1.2), curve))

@@ -159,6 +159,5 @@ def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     page = (ROOT / "docs/explanation/certificates-cubic.md").read_text("utf-8")
     line = next(x for x in page.splitlines() if x.startswith(f"| `{EXAMPLE.stem}` | 5 |"))
     printed = [Fraction(cell.strip()) for cell in line.split("|")[3:5]]
-    assert [float(x) for x in printed] == pytest.approx(
-        [float(verdict.lower), float(verdict.upper)], abs=6e-5
-    )
+    bounds = [float(verdict.lower), float(verdict.upper)]
+    assert [float(x) for x in printed] == pytest.approx(bounds, abs=6e-5)

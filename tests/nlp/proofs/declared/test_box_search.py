@@ -22,11 +22,8 @@ from trajgap.nlp.proofs.session import Session, Shorter
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
 from trajgap.verify import OutOfTime
 
-PROBLEM = Problem(
-    np.array([[0.1, 0.5], [0.9, -0.2], [0.4, 0.3], [1.3, 0.7]]),
-    Limits([1.0, 1.3], [2.1, 1.7], [11.0, 9.0]),
-    quintic_spline(3),
-)
+LIMITS = Limits([1.0, 1.3], [2.1, 1.7], [11.0, 9.0])
+PROBLEM = Problem([[0.1, 0.5], [0.9, -0.2], [0.4, 0.3], [1.3, 0.7]], LIMITS, quintic_spline(3))
 KINDS = pytest.mark.parametrize("stages", [BoxStages, QuinticStages])
 
 

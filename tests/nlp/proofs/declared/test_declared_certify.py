@@ -21,17 +21,7 @@ from trajgap.nlp.proofs.declared.simplex import best_weights
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    TrajgapError,
-    cubic_spline,
-    evaluate,
-    piecewise,
-    rest_to_rest,
-    three_five_three,
-)
+from trajgap.problem import Interpolant, Limits, Problem, TrajgapError, curves, evaluate
 from trajgap.verify import Subject, verify_certificate as verify
 
 IRB = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
@@ -87,7 +77,7 @@ def test_no_time_gives_no_lower_bound() -> None:
         certificate(found)
 
 
-@pytest.mark.parametrize("curve", [three_five_three(), piecewise((4, 3, 4))])
+@pytest.mark.parametrize("curve", [curves.three_five_three(), curves.piecewise((4, 3, 4))])
 @pytest.mark.parametrize("place", [1, 3])
 @pytest.mark.parametrize("factor", [1.0, -1.0])
 def test_a_way_point_beyond_a_position_limit_is_proved_infeasible(
@@ -106,7 +96,7 @@ def test_a_way_point_on_a_position_limit_is_within_it(factor: float) -> None:
     """Motions stop there: they pass neither, and the answer is that without the limit."""
     q = factor * np.array([[0.0], [0.5], [1.0]])
     key = "position_upper" if factor > 0.0 else "position_lower"
-    curve = rest_to_rest(2, 3)
+    curve = curves.rest_to_rest(2, 3)
     free = certify(Problem(q, Limits(1.0, 2.0), curve))
     held = certify(Problem(q, Limits(1.0, 2.0, **{key: factor}), curve))
     assert held.outcome is free.outcome is Outcome.CERTIFIED
@@ -159,7 +149,7 @@ def test_every_kind_of_curve_is_certified(name: str) -> None:
 def test_a_segment_in_which_nothing_moves_needs_a_bound() -> None:
     """Where velocity alone is limited, the shorter it is the better; else it takes a turn."""
     q = np.array([[0.25], [1.0], [1.0], [0.5]])
-    problem = Problem(q, Limits(1.0, joints=1), three_five_three())
+    problem = Problem(q, Limits(1.0, joints=1), curves.three_five_three())
     bounded = replace(problem, duration_lower=0.1)
     turning = (Limits([np.inf], 2.0), Limits([np.inf], np.inf, 8.0))
     for one in (bounded, *(replace(problem, limits=limits) for limits in turning)):
@@ -210,11 +200,8 @@ def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) 
         certify(IRB, resume=state)
 
 
-SPLINE = Problem(
-    np.random.default_rng(0).uniform(-1.5, 1.5, (7, 3)),
-    Limits(1.5, 2.0, 6.0, joints=3),
-    cubic_spline(6),
-)
+WALK = np.random.default_rng(0).uniform(-1.5, 1.5, (7, 3))
+SPLINE = Problem(WALK, Limits(1.5, 2.0, 6.0), curves.cubic_spline(6))
 
 
 def test_long_cubic_splines_begin_with_boxes_of_durations() -> None:
