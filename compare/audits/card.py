@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from ...problem.cases import (
     ImprovementClaim,
@@ -97,8 +97,7 @@ def verdict_card(
         if count_words(improvement) > left:
             improvement, unclaimed = None, "there is no room for it"
         left -= count_words(improvement or "")
-    # What a line has said of a cause has no room for what may explain it.
-    explanation = _explanation([c for c in causes if (c.rule, c.claim) not in said], left)
+    explanation = _explanation(causes, left, said)
     left -= count_words(explanation or "")
     said_of_runs = (str(runs[0]), runs[0].briefly) if runs else ()
     near = next((one for one in said_of_runs if one and count_words(one) <= left), None)
@@ -189,8 +188,13 @@ def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]
     return tuple(found), 0
 
 
-def _explanation(causes: Sequence[Cause], room: int) -> str | None:
-    """The most charitable explanation of the gravest cause that has one, if there is room."""
+def _explanation(
+    causes: Sequence[Cause], room: int, lines: Collection[tuple[str, str | None]] = ()
+) -> str | None:
+    """The most charitable explanation of the gravest cause that has one, if there is room.
+
+    `lines`: rule and claim of causes without an error on the card. Theirs says what it explains.
+    """
     for cause in causes:
         for explanation in [e for e in cause.explanations if e.settles][:1]:
             plain = explanation.change
@@ -198,7 +202,8 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
             # What it explains and what follows matter more than what it is called.
             effects = dict.fromkeys((explanation.effect, explanation.brief or explanation.effect))
             said = [f"{one} {effect}" for effect in effects for one in (called, plain)]
-            return next((e for e in (*said, called, plain) if count_words(e) <= room), None)
+            said += [] if (cause.rule, cause.claim) in lines else [called, plain]
+            return next((e for e in said if count_words(e) <= room), None)
     return None
 
 
