@@ -5,7 +5,6 @@ from .audits import (
     CaseAudit as CaseAudit,
     Pair as Pair,
     PrintedRow as PrintedRow,
-    RoundingBox as RoundingBox,
     RoundingVerdict as RoundingVerdict,
     Study as Study,
     audit as audit,

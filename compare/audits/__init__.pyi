@@ -8,7 +8,6 @@ from .provenance import certificate_files as certificate_files, package_version 
 from .readings import KEPT as KEPT, answers as answers, segments as segments
 from .rounding import (
     Point as Point,
-    RoundingBox as RoundingBox,
     RoundingVerdict as RoundingVerdict,
     judge_rounding as judge_rounding,
 )

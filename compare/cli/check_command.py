@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import typer
 
-from ...problem import Case, Check, Coupling, check as judge, published_ids
-from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
+from ...problem import Case, Check, Coupling, RoundingBox, check as judge, published_ids
+from ..audits import Point, RoundingVerdict, in_words, judge_rounding
 from ..blocks import Block, Prose, seconds
 from ..documents import (
     BrokenPlace,

@@ -9,8 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, to_si
-from ..audits import RoundingBox
+from ...problem import (
+    Case,
+    CaseError,
+    Printed,
+    Problem,
+    RoundingBox,
+    TrajgapError,
+    load_case,
+    to_si,
+)
 
 
 @dataclass(frozen=True, eq=False)

@@ -150,8 +150,8 @@ def _searched(rng: cases.Rng, asked: cases.Asked, h: cases.Array, folder: Path) 
 
 def rounding(rng: cases.Rng, folder: Path) -> str | None:
     """The verdict over all inputs that print alike, against random inputs of the box."""
-    from trajgap.compare.audits import RoundingBox, judge_rounding
-    from trajgap.problem import Printed, TrajgapError
+    from trajgap.compare.audits import judge_rounding
+    from trajgap.problem import Printed, RoundingBox, TrajgapError
 
     try:
         asked = cases.draw_asked(rng, cases.draw_family(rng), most_points=4, most_joints=2)
