@@ -24,6 +24,7 @@ from ..documents import (
     capital,
     quoted,
 )
+from .named_profiles import profile_called
 from .stated import RowClaim, at_place, place
 from .words import NO_PROFILE, TABLES
 
@@ -110,7 +111,8 @@ def _plain(
         "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
         "TG301": "The two printed times do not scale with their velocity limits, as shortest "
         "times do",
-        "TG304": f"{there} total is {printed}, but the profile takes {computed}"
+        "TG304": f"{there} total is {printed}, but the {profile_called([str(claim.profile)])} "
+        f"takes {computed}"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",
         "TG305": f"{at_place(where)}, {printed} is called the shortest along a path whose shortest "

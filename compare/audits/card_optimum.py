@@ -70,7 +70,7 @@ def optimum_line(
     if not beside or stands_in(study):
         return _without_totals(study, words)
     if all(isinstance(part, _Unknown) and part.why == UNLIMITED for part in beside):
-        return f"{capital(UNLIMITED)}: none can be broken, and no motion is the shortest."
+        return f"{capital(UNLIMITED)}, so there is no shortest time to compare with."
     where = [f"under {_default(study)}"] if len(study.readings) > 1 else []
     doubted = any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim)
     if doubted and not before:
@@ -319,9 +319,9 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
         return _OtherAim((shown,), called, certified, ratios, (span + proven,))
     remark = _kept_there(row)
     said = _remarked(shown, remark)
-    joints = _joint_by_joint(row, total, seconds)
+    joints = _joint_by_joint(row, total, seconds, said)
     if joints is not None:
-        return f"{said} {joints}"
+        return joints
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= best and floor <= high:
         return f"{said} lies in the proven interval of the optimum, {shown_best}"
@@ -393,7 +393,9 @@ def _kept_there(row: PrintedRow[TimeClaim]) -> str:
     return "" if contradicts_its_parts(row) else _REMARKS.get(row.keeping, "")
 
 
-def _joint_by_joint(row: PrintedRow[TimeClaim], total: Total, seconds: float) -> str | None:
+def _joint_by_joint(
+    row: PrintedRow[TimeClaim], total: Total, seconds: float, said: str
+) -> str | None:
     """A total beside what the joints' own optima give, where each is planned by itself."""
     claim = row.claim
     if not planned_apart(row.study.problem(row.pair)) or claim.joint is not None:
@@ -407,15 +409,15 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], total: Total, seconds: float) ->
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
     at = "" if all_exact(row) else " at the printed digits"
-    own = f"what optimising each joint separately gives{at}{'' if proven else ' (best known)'}"
-    own += f", {ranged(wide.lowest, wide.highest, '.4f')} s"
+    span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
+    own = f"optimising each joint separately gives {span}{at}{'' if proven else ' (best known)'}; "
     low, high = total.interval
     if meet((low, high), (wide.lowest, wide.highest)):
-        return f"agrees with {own}"
+        return f"{own}{said} agrees with that"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
     shown = " to ".join(dict.fromkeys(map(_percent, shares)))
-    return f"is {shown} % {'above' if longer else 'below'} {own}"
+    return f"{own}{said} is {shown} % {'above' if longer else 'below'} that"
 
 
 def _percent(share: float) -> str:

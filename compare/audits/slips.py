@@ -100,7 +100,7 @@ def misprints(spot: Spot, signed: bool = False) -> Iterator[Slip]:
             continue
         ratio = float(other.fraction / was.fraction) if was.fraction else 0.0
         yield Slip(
-            change=f"{spot.name} may be misprinted: {other.text} instead of {was.text}.",
+            change=f"{spot.name} is printed as {was.text}, perhaps for {other.text}.",
             edits=((spot.path, Printed(other.text, exact=was.exact)),),
             slips=1,
             share=max(ratio, 1 / ratio) if ratio > 0 else float("inf"),

@@ -26,8 +26,11 @@ def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity
 @pytest.mark.parametrize(
     ("coupling", "said"),
     [
-        ("per-joint", "what optimising each joint separately gives, 4.0000 to 4.0010 s"),
-        ("shared", "the "),
+        (
+            "per-joint",
+            "Optimising each joint separately gives 4.0000 to 4.0010 s; ",
+        ),
+        ("shared", "4.400 s is 10.0 % above the "),
     ],
 )
 def test_a_total_of_joints_planned_alone_has_their_own_optima(coupling: str, said: str) -> None:
@@ -42,7 +45,7 @@ def test_a_total_of_joints_planned_alone_has_their_own_optima(coupling: str, sai
         claim("longest", "maximum", of=["one", "other"], **last),
         coupling=coupling,
     )
-    assert found.startswith(f"4.400 s is 10.0 % above {said}")
+    assert found.startswith(said)
     assert ("each joint separately" in found) == (coupling == "per-joint")
 
 

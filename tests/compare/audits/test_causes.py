@@ -58,7 +58,7 @@ def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> Non
     effects = {e.change: e.effect for e in broken.explanations}
     # Joint 5 reaches 119.07 °/s; the exchange keeps 110 °/s and does not reach it.
     first, *others = effects
-    assert first == "The limit of velocity may be misprinted: 119 instead of 110."
+    assert first == "The limit of velocity is printed as 110, perhaps for 119."
     assert "every limit is kept within rounding and one is reached" in effects[first]
     assert "Durations 1 and 3 may have been exchanged in print." in others
 
@@ -165,8 +165,8 @@ def test_an_angle_is_tried_modulo_a_full_turn() -> None:
 def test_a_misprinted_digit_explains_a_sum() -> None:
     (cause,) = judged([0, 3, 4], 1.9, "3.000 1.000", "4.100").causes
     assert cause.rule == "TG101"
-    said = {e.change.split(": ")[1].split(" ")[0] for e in cause.explanations}
-    assert said == {"4.000", "3.100", "1.100"}
+    said = {e.change.rpartition(" for ")[2] for e in cause.explanations}
+    assert said == {"4.000.", "3.100.", "1.100."}
     effects = {e.effect for e in cause.explanations}
     assert effects == {"Then the printed total is the sum of its parts."}
 
@@ -177,7 +177,7 @@ def test_what_explains_one_row_does_not_speak_for_another() -> None:
     one = judged([0, 3, 4.2], 1.9, "2.062 1.190", "4.152", *other)
     by = {(c.rule, c.claim): c for c in one.causes}
     (first, *_) = by["TG201", "d"].explanations
-    assert first.change.endswith("misprinted: 2.962 instead of 2.062.")
+    assert first.change.endswith("is printed as 2.062, perhaps for 2.962.")
     assert first.effect == (
         "Then the durations in d keep every limit, one is reached and the printed total is "
         "the sum of its parts; those in e still break one."
@@ -189,10 +189,14 @@ def test_what_explains_one_row_does_not_speak_for_another() -> None:
     ("limit", "end", "named"),
     [
         # 15/8 of 1 rad in 1.5 s is 1.25 rad/s; of 1.4 rad it would be 1.75 rad/s.
-        ("0.125", "1.20", "The limit of velocity of joint 1 may be misprinted: 1.25 instead"),
-        ("1.25", "2.20", "Way-point B of joint 1 may be misprinted: 1.20 instead of 2.20."),
-        ("1.25", "120", "Way-point B of joint 1 may be misprinted: 1.20 instead of 120."),
-        ("1.25", "-1.20", "Way-point B of joint 1 may be misprinted: 1.20 instead of -1.20."),
+        (
+            "0.125",
+            "1.20",
+            "The limit of velocity of joint 1 is printed as 0.125, perhaps for ",
+        ),
+        ("1.25", "2.20", "Way-point B of joint 1 is printed as 2.20, perhaps for 1.20."),
+        ("1.25", "120", "Way-point B of joint 1 is printed as 120, perhaps for 1.20."),
+        ("1.25", "-1.20", "Way-point B of joint 1 is printed as -1.20, perhaps for 1.20."),
     ],
 )
 def test_a_misprint_is_found_where_the_reading_has_it(limit: str, end: str, named: str) -> None:

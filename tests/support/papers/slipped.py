@@ -43,7 +43,7 @@ def slipped(kind: str, seed: int) -> Slipped:
 
 def named(one: Slipped, found: Any) -> bool:
     """Whether an audit names the misprint among its explanations."""
-    said = f"misprinted: {one.meant} instead of {one.printed}."
+    said = f"is printed as {one.printed}, perhaps for {one.meant}."
     return any(said in e.change for cause in found.causes for e in cause.explanations)
 
 

@@ -118,7 +118,7 @@ def test_the_card_speaks_of_the_row_and_of_nothing_else() -> None:
     assert card.limits.startswith("The printed durations break a limit")
     assert card.optimum.endswith("so no optimum applies.")
     assert not card.errors
-    assert "misprinted" not in str(card.explanation)
+    assert "perhaps for" not in str(card.explanation)
     # One cause, and the sentence that the limits are kept as its consequence.
     (cause,) = one.causes
     assert cause.claim == "row"
