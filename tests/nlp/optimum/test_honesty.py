@@ -46,8 +46,8 @@ def test_a_known_motion_is_kept_if_the_solver_finds_none(monkeypatch: pytest.Mon
 
     problem = TURNING
     known = 1.3 * solve(problem).durations
-    for name in ("_widely", "_stretched_start"):
-        monkeypatch.setattr(solver, name, lambda one, *_: Solution(one, Status.NONE_FOUND, "lost"))
+    monkeypatch.setattr(solver, "_widely", lambda one, *_: Solution(one, Status.NONE_FOUND, "lost"))
+    monkeypatch.setattr(solver, "decided", lambda *_: None)
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)
     assert found.total_time <= known.sum()
