@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from ...problem.cases import (
-    ImprovementClaim,
-    StatementClaim,
-)
+from ...problem.cases import ImprovementClaim
 from ..documents import (
     CARD_WORDS,
     Cause,
@@ -121,12 +118,13 @@ def _verdict(study: Study, words: Mapping[str, Judgement], kept: Kept) -> str:
     every = {one: judgement.verdict for one, judgement in words.items()}
     said: list[str] = []
     apart: set[str] = set()
-    optimal = [c for c in study.case.claims if isinstance(c, StatementClaim)]
-    optimal = [c for c in optimal if c.checks == "optimal" and c.id in words]
-    if against := {c.id for c in optimal if every[c.id] in AGAINST}:
-        said, apart = ["Not optimal as printed."], against
-    elif unsure := {c.id for c in optimal if every[c.id] is ClaimVerdict.DEPENDS}:
-        said, apart = ["Whether the result is optimal depends on the reading."], unsure
+    optimal = {c.id for c in study.statements("optimal")} & every.keys()
+    called = {every[one] for one in optimal}
+    # Several results that differ are counted; a contradiction in print refutes none by itself.
+    if called == {ClaimVerdict.REFUTED}:
+        said, apart = ["Not optimal as printed."], optimal
+    elif called == {ClaimVerdict.DEPENDS}:
+        said, apart = ["Whether the result is optimal depends on the reading."], optimal
     if kept.verdict is ClaimVerdict.REFUTED:
         said.append("A limit is broken.")
         apart = apart | kept.claims

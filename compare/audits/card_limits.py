@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from ...problem import Verdict
-from ...problem.cases import AnyClaim, ProfiledClaim, StatementClaim, TimeClaim, TotalTimeClaim
+from ...problem.cases import AnyClaim, ProfiledClaim, TimeClaim, TotalTimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,
@@ -44,11 +44,7 @@ class Kept(NamedTuple):
 def kept_limits(study: Study, words: Mapping[str, Judgement]) -> Kept:
     """Whether the durations that a paper calls its result keep the limits."""
     case, undecided = study.case, ClaimVerdict.NOT_CHECKABLE
-    about = [
-        c
-        for c in case.claims
-        if isinstance(c, StatementClaim) and c.checks == "within_limits" and c.id in words
-    ]
+    about = [c for c in study.statements("within_limits") if c.id in words]
     meant = [c for c in case.claims if isinstance(c, RowClaim) and meant_to_keep(case, c)]
     elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
     rows = [c for c in meant if c not in elsewhere and c.id in words]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ...nlp import Evidence, Solution, Status
 from ...problem import Coupling, shown_bound
-from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, StatementClaim, TimeClaim
+from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, TimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,
@@ -40,7 +40,7 @@ UNLIMITED = "no limits are stated"
 DOUBTED = "printed way-points that other printed numbers contradict"
 """What a total rests on, where way-points are in doubt."""
 _LONG = 9
-"""Words of a label or an objective from which a sentence leaves it out."""
+"""Words of a label or an objective that a sentence has room for: a line on a page."""
 _PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
 """What an optimum is called, and several of them."""
 _REMARKS = {
@@ -152,8 +152,7 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     # From a hundredth of a percent on, as the claims do.
     longer = [percent(more, ".2g") for more in above.values() if more > 1e-4]
     named = {c.id for c in claims}
-    said = [c for c in study.case.claims if isinstance(c, StatementClaim)]
-    optimal = any(named.intersection(c.of) for c in said if c.checks == "optimal")
+    optimal = any(named.intersection(c.of) for c in study.statements("optimal"))
     note = "" if optimal else ", which the text does not call the shortest"
     if len(longer) > 1:
         far = " and ".join(longer)

@@ -22,8 +22,9 @@ FEW = 2
 def percent(share: float, form: str = ".3g") -> str:
     """A share in percent, never with an exponent."""
     rounded = float(f"{100 * share:{form}}")
-    sign = "+" if form.startswith("+") else ""
-    return f"{rounded:{f'{sign}.0f' if abs(rounded) >= 100 else form}} %"
+    if abs(rounded) >= 100:
+        form = "+.0f" if form.startswith("+") else ".0f"
+    return f"{rounded:{form}} %"
 
 
 def seconds(value: float, form: str = ".6g") -> str:
